@@ -1,0 +1,1 @@
+"""Encoders that ship with vprbench: what pathways from a frame to its landmarks."""

@@ -1,0 +1,1 @@
+"""Localizers that ship with vprbench: memories of places."""

@@ -1,0 +1,1 @@
+"""A Gymnasium-style environment and benchmark suite for visual place recognition."""
