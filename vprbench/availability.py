@@ -1,0 +1,110 @@
+"""What a route needs on disk, and what of it is there."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Mapping
+from dataclasses import dataclass
+from pathlib import Path
+
+from vprbench.errors import DataError
+from vprbench.frame_ranges import format_ranges
+
+__all__ = ["Availability", "Need", "need_of"]
+
+
+@dataclass(frozen=True)
+class Need:
+    """The files of one recording that a route needs, and those that are not there.
+
+    Attributes:
+        source: the recording in words, for example "KITTI odometry sequence 00".
+        folder: where its frames are looked for.
+        frames: the frame numbers needed.
+        missing: those of them without a file.
+        absent: other files that are not there (poses, times, calibration).
+        remedy: how to get them.
+    """
+
+    source: str
+    folder: Path
+    frames: tuple[int, ...]
+    missing: tuple[int, ...]
+    absent: tuple[Path, ...]
+    remedy: str
+
+    @property
+    def complete(self) -> bool:
+        """Whether everything is there."""
+        return not self.missing and not self.absent
+
+    def __str__(self) -> str:
+        """What is needed, what is there and what is not, in one line."""
+        there = len(self.frames) - len(self.missing)
+        text = f"frames {format_ranges(self.frames)} of {self.source}: "
+        text += f"{there} of {len(self.frames)} are in {self.folder}"
+        if self.missing:
+            text += f", missing {format_ranges(self.missing)}"
+        if self.absent:
+            text += f"; no file {', '.join(map(str, self.absent))}"
+        return text
+
+
+@dataclass(frozen=True)
+class Availability:
+    """Whether a route can be loaded, and what stands in its way.
+
+    Attributes:
+        route: the route's name.
+        needs: what it needs of each recording; empty for a route that is drawn.
+    """
+
+    route: str
+    needs: tuple[Need, ...]
+
+    @property
+    def present(self) -> int:
+        """Number of needed frames that are there."""
+        return sum(len(need.frames) for need in self.needs) - self.missing
+
+    @property
+    def missing(self) -> int:
+        """Number of needed frames that are not there."""
+        return sum(len(need.missing) for need in self.needs)
+
+    @property
+    def complete(self) -> bool:
+        """Whether the route can be loaded."""
+        return all(need.complete for need in self.needs)
+
+    def require(self) -> None:
+        """Raise DataError, with the remedy, unless everything is there."""
+        wanting = [need for need in self.needs if not need.complete]
+        if wanting:
+            remedies = dict.fromkeys(need.remedy for need in wanting)
+            raise DataError(
+                f"{self.route} needs {'; and '.join(map(str, wanting))}. {' '.join(remedies)} "
+                "`vprbench list` shows what is there."
+            )
+
+
+def need_of(source: str, folder: Path, frames: Mapping[int, Path], others: Iterable[Path], remedy: str) -> Need:
+    """A recording's need, checked against its folders' listings (no file is opened).
+
+    Args:
+        source: the recording in words.
+        folder: where its frames are looked for, for the message.
+        frames: the file of each frame number needed.
+        others: the other files needed.
+        remedy: how to get them, a sentence.
+    """
+    listings = {parent: _names(parent) for parent in {path.parent for path in frames.values()}}
+    missing = tuple(sorted(i for i, path in frames.items() if path.name not in listings[path.parent]))
+    absent = tuple(path for path in others if not path.is_file())
+    return Need(source, folder, tuple(sorted(frames)), missing, absent, remedy)
+
+
+def _names(folder: Path) -> frozenset[str]:
+    try:
+        return frozenset(path.name for path in folder.iterdir())
+    except OSError:
+        return frozenset()

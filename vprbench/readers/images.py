@@ -1,0 +1,118 @@
+"""Image files as frames: read when asked for, proven whole, grey, 642 x 188."""
+
+from __future__ import annotations
+
+import hashlib
+import zlib
+from dataclasses import dataclass
+from pathlib import Path
+
+import cv2
+import numpy as np
+from jaxtyping import UInt8
+
+from vprbench.errors import DataError
+from vprbench.route import Camera
+from vprbench.types import FRAME_HEIGHT, FRAME_WIDTH, Frame
+
+__all__ = ["ImageFiles", "content_hash", "image_size", "read_grey", "scaled_camera"]
+
+_PNG = b"\x89PNG\r\n\x1a\n"
+_JPEG, _JPEG_END = b"\xff\xd8\xff", b"\xff\xd9"
+
+
+@dataclass(frozen=True)
+class ImageFiles:
+    """Frames that lie as one image file each; a FrameSource.
+
+    Attributes:
+        paths: the file of frame 0, 1, ...
+        size: width and height that every file must have, pixels.
+    """
+
+    paths: tuple[Path, ...]
+    size: tuple[int, int]
+
+    def __getitem__(self, index: int, /) -> Frame:
+        """Frame `index`, reduced by pixel area; DataError where its file is not a whole 8-bit image."""
+        path = self.paths[index]
+        image = read_grey(path)
+        if image.shape[::-1] != self.size:
+            raise DataError(
+                f"{path}: {_times(image.shape[::-1])} pixels where the drive's other frames have "
+                f"{_times(self.size)}: one drive, one camera"
+            )
+        return cv2.resize(image, (FRAME_WIDTH, FRAME_HEIGHT), interpolation=cv2.INTER_AREA).astype(np.uint8)
+
+
+def read_grey(path: Path) -> UInt8[np.ndarray, "height width"]:
+    """The grey image in a PNG or JPEG file; colour is converted, damage and 16 bits are a DataError."""
+    data = _bytes(path)
+    fault = _fault(data)
+    if fault:
+        raise DataError(f"{path}: {fault}; fetch the file again")
+    image = cv2.imdecode(np.frombuffer(data, np.uint8), cv2.IMREAD_ANYDEPTH | cv2.IMREAD_ANYCOLOR)
+    if image is None:
+        raise DataError(f"{path}: the image cannot be decoded; fetch the file again")
+    if image.dtype != np.uint8:
+        raise DataError(f"{path}: {8 * image.itemsize} bits a pixel where 8 are due; convert it to 8 bits")
+    grey = image if image.ndim == 2 else cv2.cvtColor(image, cv2.COLOR_BGR2GRAY)
+    return np.asarray(grey, np.uint8)
+
+
+def image_size(path: Path) -> tuple[int, int]:
+    """Width and height of an image file, pixels."""
+    height, width = read_grey(path).shape
+    return width, height
+
+
+def scaled_camera(fx: float, cx: float, width: int) -> Camera:
+    """The camera of the reduced frames, given its focal length and principal column at full width, pixels."""
+    scale = FRAME_WIDTH / width
+    return Camera(float(fx * scale), float(cx * scale))
+
+
+def content_hash(paths: tuple[Path, ...], *motion: bytes) -> str:
+    """Sha256 of a drive: the bytes of its frame files in order, then of its motion and camera."""
+    digest = hashlib.sha256()
+    for path in paths:
+        digest.update(hashlib.sha256(_bytes(path)).digest())
+    for part in motion:
+        digest.update(hashlib.sha256(part).digest())
+    return digest.hexdigest()
+
+
+def _bytes(path: Path) -> bytes:
+    try:
+        return path.read_bytes()
+    except OSError as error:
+        raise DataError(f"{path}: cannot be read ({error.strerror})") from error
+
+
+# OpenCV decodes a damaged file to a partly grey image with no more than a line on stderr.
+def _fault(data: bytes) -> str | None:
+    if not data:
+        return "the file is empty"
+    if data.startswith(_PNG):
+        return _png_fault(data)
+    if data.startswith(_JPEG):
+        return None if _JPEG_END in data[-64:] else "the JPEG is cut off"
+    return "neither PNG nor JPEG"
+
+
+def _png_fault(data: bytes) -> str | None:
+    start = len(_PNG)
+    while start + 12 <= len(data):
+        end = start + 12 + int.from_bytes(data[start : start + 4], "big")
+        if end > len(data):
+            break
+        if zlib.crc32(memoryview(data)[start + 4 : end - 4]) != int.from_bytes(data[end - 4 : end], "big"):
+            return f"the PNG is damaged at byte {start}"
+        if data[start + 4 : start + 8] == b"IEND":
+            return None
+        start = end
+    return "the PNG is cut off"
+
+
+def _times(size: tuple[int, ...]) -> str:
+    return "x".join(map(str, size))

@@ -1,0 +1,140 @@
+"""The KITTI odometry benchmark: `dataset/sequences/SS/image_0/NNNNNN.png` and `dataset/poses/SS.txt`.
+
+Geiger, Lenz, Urtasun, "Are we ready for autonomous driving? The KITTI vision benchmark suite", CVPR 2012.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from dataclasses import dataclass
+from functools import cached_property
+from pathlib import Path
+from typing import Literal, NamedTuple
+
+import numpy as np
+from jaxtyping import Float64
+
+from vprbench.availability import Need, need_of
+from vprbench.errors import DataError
+from vprbench.frame_ranges import FrameRun
+from vprbench.readers.images import ImageFiles, content_hash, image_size, scaled_camera
+from vprbench.readers.tables import check_increasing, read_numbers, read_text
+from vprbench.route import Traverse
+
+__all__ = ["Motion", "OdometryCamera", "OdometrySequence", "read_motion", "read_projection"]
+
+# Left grey and left colour: the benchmark's poses are those of camera 0.
+OdometryCamera = Literal["image_0", "image_2"]
+
+_REMEDY = (
+    "Unzip the KITTI odometry benchmark's {images}, calibration files and ground truth poses "
+    "(https://www.cvlibs.net/datasets/kitti/eval_odometry.php) there, or say where they are with --data or "
+    "VPRBENCH_DATA."
+)
+_IMAGES = {"image_0": "data set (grayscale, 22 GB)", "image_2": "data set (color, 65 GB)"}
+
+
+class Motion(NamedTuple):
+    """Where a vehicle was at each frame: (n, 2) metres, (n,) radians clockwise from north, (n,) seconds."""
+
+    positions: Float64[np.ndarray, "n 2"]
+    headings: Float64[np.ndarray, " n"]
+    times: Float64[np.ndarray, " n"]
+
+
+@dataclass(frozen=True)
+class OdometrySequence:
+    """One sequence of the benchmark on disk.
+
+    Attributes:
+        root: the folder that holds `dataset/`, or that folder itself.
+        name: "00" to "10" (the others have no poses).
+        camera: "image_0" (grey) or "image_2" (colour, converted to grey).
+    """
+
+    root: Path
+    name: str
+    camera: OdometryCamera = "image_0"
+
+    @property
+    def folder(self) -> Path:
+        """The sequence's own folder."""
+        return _dataset(self.root) / "sequences" / self.name
+
+    @property
+    def poses(self) -> Path:
+        """The file of the sequence's ground truth poses."""
+        return _dataset(self.root) / "poses" / f"{self.name}.txt"
+
+    def need(self, frames: Iterable[int]) -> Need:
+        """These frames and the sequence's pose, time and calibration files."""
+        files = {i: self._file(i) for i in frames}
+        others = [self.poses, self.folder / "times.txt", self.folder / "calib.txt"]
+        remedy = _REMEDY.format(images=_IMAGES[self.camera])
+        return need_of(f"KITTI odometry sequence {self.name}", self.folder / self.camera, files, others, remedy)
+
+    @cached_property
+    def motion(self) -> Motion:
+        """The pose and time of every frame of the sequence."""
+        return read_motion(self.poses, self.folder / "times.txt")
+
+    def traverse(self, run: FrameRun) -> Traverse:
+        """The drive along a run of frames; DataError where the sequence ends before the run."""
+        if run.last >= len(self.motion.times):
+            raise DataError(f"{self.poses}: {len(self.motion.times)} poses, too few for frame {run.last}")
+        drive = slice(run.first, run.last + 1)
+        positions, headings, times = (values[drive] for values in self.motion)
+        paths = tuple(self._file(i) for i in run.frames)
+        projection = read_projection(self.folder / "calib.txt", f"P{self.camera[-1]}")
+        size = image_size(paths[0])
+        return Traverse(
+            name=f"KITTI {self.name}, frames {run.first}-{run.last}",
+            frames=ImageFiles(paths, size),
+            positions=positions,
+            headings=headings,
+            times=times,
+            camera=scaled_camera(projection[0, 0], projection[0, 2], size[0]),
+            indices=np.arange(run.first, run.last + 1),
+            checksum=content_hash(paths, *(v.tobytes() for v in (positions, headings, times, projection))),
+        )
+
+    def _file(self, frame: int) -> Path:
+        return self.folder / self.camera / f"{frame:06d}.png"
+
+
+def read_motion(poses: Path, times: Path) -> Motion:
+    """A sequence's motion on the ground plane (x, z) of camera 0, from its pose and time files.
+
+    Positions are (P[0,3], P[2,3]) and headings atan2(P[0,2], P[2,2]) of each 3x4 pose P: with x as east
+    and z as north, clockwise from north.
+    """
+    matrices = read_numbers(poses, 12).reshape(-1, 3, 4)
+    seconds = read_numbers(times, 1)[:, 0]
+    if len(seconds) != len(matrices):
+        raise DataError(f"{times}: {len(seconds)} times for the {len(matrices)} poses in {poses}")
+    check_increasing(seconds, times)
+    headings = np.arctan2(matrices[:, 0, 2], matrices[:, 2, 2])
+    return Motion(matrices[:, [0, 2], 3], headings, seconds)
+
+
+def read_projection(path: Path, key: str) -> Float64[np.ndarray, "3 4"]:
+    """The projection matrix that a KITTI calibration file gives under `key`, pixels."""
+    for line, text in enumerate(read_text(path).splitlines(), 1):
+        name, _, values = text.partition(":")
+        if name.strip() == key:
+            return _projection(values.split(), f"{path}, line {line}")
+    raise DataError(f"{path}: no line {key!r}")
+
+
+def _projection(words: list[str], where: str) -> Float64[np.ndarray, "3 4"]:
+    try:
+        matrix = np.array(words, np.float64).reshape(3, 4)
+    except ValueError as error:
+        raise DataError(f"{where}: not the 12 numbers of a projection matrix") from error
+    if not np.isfinite(matrix).all() or matrix[0, 0] <= 0:
+        raise DataError(f"{where}: the focal length must be finite and positive")
+    return matrix
+
+
+def _dataset(root: Path) -> Path:
+    return root if (root / "sequences").is_dir() else root / "dataset"
