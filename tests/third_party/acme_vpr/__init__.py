@@ -1,0 +1,3 @@
+"""A third party's plug-ins for vprbench."""
+
+ANSWER = 42
