@@ -60,7 +60,7 @@ class RouteEnv(gym.Env[Observation, dict[str, Any]]):
         self.render_mode = render_mode
         frames = len(self.route.learn)
         self.observation_space = observation_space(self.route)  # type: ignore[assignment]
-        self.action_space = spaces.Dict(  # type: ignore[assignment]
+        self.action_space = spaces.Dict(
             {
                 "place": spaces.Discrete(frames + 1, start=NO_PLACE),
                 "confidence": spaces.Box(0.0, 1.0, (), np.float32),
@@ -114,7 +114,7 @@ class RouteEnv(gym.Env[Observation, dict[str, Any]]):
         """Show these focus points (columns u, rows v) of the present frame when it is rendered."""
         self._points = points
 
-    def render(self) -> UInt8[np.ndarray, "height width 3"] | None:  # type: ignore[override]
+    def render(self) -> UInt8[np.ndarray, "height width 3"] | None:
         """The present frame with its focus points, the retrieved place's frame, and the map."""
         if self.render_mode is None:
             return None

@@ -1,0 +1,5 @@
+"""`python -m vprbench` is the command line."""
+
+from vprbench.cli import main
+
+main()

@@ -1,0 +1,26 @@
+"""The command line: a thin edge that turns words into calls, and errors into one line and an exit code."""
+
+from __future__ import annotations
+
+import sys
+
+__all__ = ["main"]
+
+
+def main() -> None:
+    """Run `vprbench`; a fault the user can mend is one line on stderr and a non-zero exit code."""
+    from vprbench.cli.app import app
+    from vprbench.errors import VprbenchError
+
+    try:
+        app()
+    except VprbenchError as error:
+        sys.stderr.write(f"vprbench: {error}\n")
+        sys.exit(error.exit_code)
+    except KeyboardInterrupt:
+        sys.stderr.write("vprbench: interrupted; what was finished is kept\n")
+        sys.exit(130)
+    except BrokenPipeError:
+        # The reader of our output has gone, as `| head` does: nothing is left to say to it.
+        sys.stderr.close()
+        sys.exit(141)

@@ -1,0 +1,129 @@
+"""The commands and their options; each imports what it runs only when it runs."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Annotated
+
+import typer
+
+__all__ = ["app"]
+
+app = typer.Typer(
+    name="vprbench",
+    help="Benchmark visual place recognition: sweep agents over roads driven twice.",
+    epilog="Start with: vprbench sweep streets",
+    no_args_is_help=True,
+    pretty_exceptions_enable=False,
+    rich_markup_mode="rich",
+    context_settings={"help_option_names": ["-h", "--help"]},
+)
+
+Data = Annotated[
+    Path | None,
+    typer.Option(help="Folder that holds KITTI's dataset/. Default: $VPRBENCH_DATA, else the user data folder."),
+]
+Routes = Annotated[Path | None, typer.Option(help="TOML file with routes of your own.")]
+Out = Annotated[Path, typer.Option(help="Folder of the result tables.")]
+
+
+@app.command(epilog="Example: vprbench sweep k0-2 --data ~/kitti --jobs 2")
+def sweep(
+    name: Annotated[
+        str, typer.Argument(help="A built-in sweep (see: vprbench list sweeps) or a .toml file.")
+    ] = "streets",
+    out: Out = Path("results"),
+    data: Data = None,
+    routes: Routes = None,
+    jobs: Annotated[int | None, typer.Option(min=1, help="Worker processes. Default: one a core.")] = None,
+    filter: Annotated[str | None, typer.Option(help="Only cells whose id holds this; * and ? are wildcards.")] = None,
+    timeout: Annotated[
+        float | None, typer.Option(min=0.001, help="Seconds that one agent may take on one route.")
+    ] = None,
+    overwrite: Annotated[bool, typer.Option("--overwrite", help="Measure again what is already there.")] = False,
+    dry_run: Annotated[bool, typer.Option("--dry-run", help="Only say which cells would run, and how long.")] = False,
+) -> None:
+    """Measure every cell of a sweep (route x sampling distance x agent x seed) that is not yet in its table.
+
+    Leaves OUT/NAME.toml (the question), OUT/NAME.csv and .parquet (the answer, one row a cell) and
+    OUT/NAME.traces/ (every answer behind it). Stop it when you like: the next call goes on where it stopped.
+    Exit code 1 if a cell failed.
+    """
+    from vprbench.cli.sweeping import Request, sweep_command
+
+    request = Request(name, out, data, routes, jobs, filter, timeout, overwrite, dry_run)
+    raise typer.Exit(sweep_command(request))
+
+
+@app.command(epilog='Example: vprbench run Street-Wide \'localizer="max-pi", encoder="log-polar"\' --distance 3')
+def run(
+    route: Annotated[str, typer.Argument(help="A route (see: vprbench list routes).")],
+    agent: Annotated[str, typer.Argument(help="A localizer's name, or the inside of a TOML table.")],
+    distance: Annotated[float, typer.Option(min=0.001, help="Mean metres between places.")] = 3.0,
+    seed: Annotated[int, typer.Option(min=0, help="For agents that learn from random numbers.")] = 0,
+    data: Data = None,
+    routes: Routes = None,
+    trace: Annotated[Path | None, typer.Option(help="Save every answer to this .parquet file.")] = None,
+    video: Annotated[
+        Path | None, typer.Option(help="Film the test drive into this .mp4 file (needs the video extra).")
+    ] = None,
+) -> None:
+    """Measure one agent on one route, and print its scores."""
+    from vprbench.cli.single import run_command
+
+    run_command(route, agent, distance, seed, data, routes, trace, video)
+
+
+@app.command(epilog="Example: vprbench table results/streets.csv --columns route --metric auc_all --format latex")
+def table(
+    results: Annotated[Path, typer.Argument(help="The .csv or .parquet of a sweep.")],
+    rows: Annotated[str, typer.Option(help="Column of the results to list downwards.")] = "agent",
+    columns: Annotated[str, typer.Option(help="Column of the results to list across.")] = "sampling_distance_m",
+    metric: Annotated[str, typer.Option(help="Which score; any numeric column.")] = "auc",
+    format: Annotated[str, typer.Option(help="terminal, markdown, latex or csv.")] = "terminal",
+) -> None:
+    """Pivot a result table: means, standard deviations and intervals, the best in bold."""
+    from vprbench.cli.reading import table_command
+
+    table_command(results, rows, columns, metric, format)
+
+
+@app.command(name="list", epilog="Example: vprbench list routes --data ~/kitti")
+def list_(
+    what: Annotated[
+        str, typer.Argument(help="routes, encoders, localizers or sweeps; all of them by default.")
+    ] = "all",
+    data: Data = None,
+    routes: Routes = None,
+) -> None:
+    """List routes (and which of their data are present), encoders, localizers and sweeps."""
+    from vprbench.cli.listing import list_command
+
+    list_command(what, data, routes)
+
+
+@app.command(epilog="Example: vprbench score results/streets.csv")
+def score(
+    results: Annotated[Path, typer.Argument(help="The .csv of a sweep, or one trace (.parquet).")],
+) -> None:
+    """Compute the metrics again from the stored answers, and compare them with the table.
+
+    Exit code 1 where they differ.
+    """
+    from vprbench.cli.reading import score_command
+
+    raise typer.Exit(score_command(results))
+
+
+@app.command(epilog="Example: vprbench check log-polar")
+def check(
+    name: Annotated[str, typer.Argument(help="An encoder or localizer (see: vprbench list).")],
+    encoder: Annotated[str | None, typer.Option(help="Encoder to check a localizer with, where it needs one.")] = None,
+) -> None:
+    """Check that a plug-in keeps its protocol: one line a check.
+
+    Exit code 1 where one fails.
+    """
+    from vprbench.cli.checking import check_command
+
+    raise typer.Exit(check_command(name, encoder))

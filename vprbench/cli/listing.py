@@ -1,0 +1,73 @@
+"""`vprbench list`: what there is to run, and whether its data are here."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+from rich.console import Console
+from rich.table import Table
+
+from vprbench.catalogue import catalogue
+from vprbench.data_root import data_root
+from vprbench.errors import ConfigError, nearest
+from vprbench.plugins import Kind, plugins
+from vprbench.sweep import builtin_sweeps, parse_sweep
+
+__all__ = ["list_command"]
+
+
+def list_command(what: str, data: Path | None, routes: Path | None) -> None:
+    """Print the lists asked for."""
+    console = Console()
+    lists = {
+        "routes": lambda: _routes(data, routes),
+        "encoders": lambda: _plugins("encoder"),
+        "localizers": lambda: _plugins("localizer"),
+        "sweeps": _sweeps,
+    }
+    if what not in {*lists, "all"}:
+        raise ConfigError(f"cannot list {what!r}: {nearest(what, [*lists, 'all'])}")
+    for name in lists if what == "all" else [what]:
+        console.print(lists[name]())
+
+
+def _routes(data: Path | None, own: Path | None) -> Table:
+    """Every route, and how many of its frames are present."""
+    known = catalogue(own)
+    table = _table(f"routes (data root: {data_root(data)})", "name", "split", "environment", "data")
+    for name in known.names():
+        entry, there = known.entry(name), known.availability(name, data)
+        if not there.needs:
+            state = "drawn, needs none"
+        elif there.complete:
+            state = f"[green]all {there.present} frames[/green]"
+        else:
+            state = f"[yellow]{there.present} of {there.present + there.missing} frames[/yellow]"
+        table.add_row(name, entry.split, entry.environment, state)
+    return table
+
+
+def _plugins(kind: Kind) -> Table:
+    """Every plug-in of a kind, where it comes from, and whether it loads."""
+    table = _table(f"{kind}s", "name", "distribution", "from", "state")
+    for plugin in plugins(kind).values():
+        fault = plugin.fault()
+        table.add_row(plugin.name, plugin.origin, plugin.value, f"[red]{fault}[/red]" if fault else "[green]ok[/green]")
+    return table
+
+
+def _sweeps() -> Table:
+    """Every built-in sweep."""
+    table = _table("sweeps", "name", "cells", "asks")
+    for name, path in builtin_sweeps().items():
+        sweep = parse_sweep(path)
+        table.add_row(name, str(len(list(sweep.cells()))), sweep.description)
+    return table
+
+
+def _table(title: str, *columns: str) -> Table:
+    """An empty list."""
+    table = Table(title=title, title_justify="left", title_style="bold", box=None, pad_edge=False)
+    for column in columns:
+        table.add_column(column)
+    return table

@@ -1,0 +1,95 @@
+"""Progress of a sweep on the terminal: the whole, and under it each job at work; plain lines where none watches."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from types import TracebackType
+
+from rich.console import Console
+from rich.progress import BarColumn, Progress, TaskID, TextColumn, TimeElapsedColumn, TimeRemainingColumn
+
+from vprbench.pool import Progress as Step
+from vprbench.runner import Outcome
+from vprbench.sweep import Job
+
+__all__ = ["SweepProgress"]
+
+# What a job passes through. Comparing frames takes the longest, so it is most of the bar.
+SHARES = {"fit": 0.05, "describe frames": 0.25, "compare frames": 0.65}
+
+
+class SweepProgress:
+    """Bars for a sweep's jobs while it is entered."""
+
+    def __init__(self, jobs: Sequence[Job], console: Console) -> None:
+        self.jobs = jobs
+        self.console = console
+        self._bars = Progress(
+            TextColumn("{task.description}", justify="left"),
+            BarColumn(bar_width=28),
+            TextColumn("{task.percentage:>3.0f} %"),
+            TimeElapsedColumn(),
+            TextColumn("left"),
+            TimeRemainingColumn(),
+            console=console,
+            disable=not console.is_terminal,
+            transient=True,
+        )
+        self._cells = sum(len(job.cells) for job in jobs)
+        self._finished = 0
+        self._shown: dict[int, TaskID] = {}
+        self._done = [0.0] * len(jobs)
+        self._whole = self._bars.add_task("sweep", total=len(jobs))
+
+    def __enter__(self) -> SweepProgress:
+        self._bars.start()
+        return self
+
+    def __exit__(
+        self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
+    ) -> None:
+        self._bars.stop()
+
+    def step(self, step: Step) -> None:
+        """Show how far a job is."""
+        job = self.jobs[step.job]
+        if step.job not in self._shown:
+            self._shown[step.job] = self._bars.add_task(f"  {job}", total=1.0)
+        self._advance(step.job, _fraction(step), f"  {job}: {step.stage}")
+
+    def finish(self, outcome: Outcome) -> None:
+        """Say that a cell is done, and how."""
+        self._finished += 1
+        number = next(n for n, job in enumerate(self.jobs) if outcome.cell in job.cells)
+        if outcome.cell == self.jobs[number].cells[-1]:
+            self._advance(number, 1.0, f"  {self.jobs[number]}")
+            if number in self._shown:
+                self._bars.remove_task(self._shown.pop(number))
+        self._bars.update(self._whole, description=f"sweep: {self._finished} of {self._cells} cells")
+        self.console.print(f"{self._finished:>4}/{self._cells}  {_line(outcome)}", highlight=False)
+
+    def _advance(self, number: int, fraction: float, description: str) -> None:
+        """Move a job's bar and the whole one; neither ever goes back."""
+        self._done[number] = max(self._done[number], fraction)
+        if number in self._shown:
+            self._bars.update(self._shown[number], completed=self._done[number], description=description)
+        self._bars.update(self._whole, completed=sum(self._done))
+
+
+def _fraction(step: Step) -> float:
+    """How much of its job a step stands for, 0..1."""
+    before = 0.0
+    for stage, share in SHARES.items():
+        if stage == step.stage:
+            return before + share * step.done / max(step.total, 1)
+        before += share
+    return 0.0
+
+
+def _line(outcome: Outcome) -> str:
+    """A finished cell in one line."""
+    row = outcome.row
+    if row["status"] != "ok":
+        return f"[red]{outcome.cell.id}  failed: {row['error']}[/red]"
+    scores = f"AUC {row['auc']:.3f}, over all queries {row['auc_all']:.3f}, top-1 {row['accuracy']:.3f}"
+    return f"{outcome.cell.id}  {row['places']} places, {scores}"

@@ -1,0 +1,114 @@
+"""Worker processes: each runs one job at a time on one thread, and may fail, hang or die without harm to others."""
+
+from __future__ import annotations
+
+import multiprocessing
+from collections.abc import Iterator, Sequence
+from concurrent.futures import FIRST_COMPLETED, Future, wait
+from dataclasses import dataclass
+from functools import partial
+from pathlib import Path
+from queue import Empty, Queue
+from time import monotonic
+
+import cv2
+from pebble import ProcessExpired, ProcessPool
+from threadpoolctl import threadpool_limits
+
+from vprbench.plugins import one_line
+from vprbench.runner import Outcome, failure, run
+from vprbench.sweep import Job
+
+__all__ = ["Progress", "Settings", "run_all"]
+
+# How often a worker reports, seconds: a person sees no difference, a queue does.
+REPORT_EVERY = 0.1
+
+
+@dataclass(frozen=True)
+class Settings:
+    """How jobs are run, none of which changes a result.
+
+    Attributes:
+        workers: processes at work at once.
+        timeout: seconds that a job may take, None for any.
+        data: the data root, None for the default.
+        routes_file: a TOML with the user's own routes.
+    """
+
+    workers: int = 1
+    timeout: float | None = None
+    data: Path | None = None
+    routes_file: Path | None = None
+
+
+@dataclass(frozen=True)
+class Progress:
+    """How far a job has come in its present stage."""
+
+    job: int
+    stage: str
+    done: int
+    total: int
+
+
+def run_all(todo: Sequence[Job], settings: Settings) -> Iterator[Progress | Outcome]:
+    """Run jobs; yields their progress, and each outcome as soon as it is known."""
+    context = multiprocessing.get_context("spawn")
+    with context.Manager() as manager, ProcessPool(settings.workers, context=context) as pool:
+        messages: Queue[Progress | Outcome] = manager.Queue()
+        submit = partial(pool.schedule, _work, timeout=settings.timeout)
+        pending: dict[Future[None], Job] = {
+            submit(args=[job, number, settings, messages]): job for number, job in enumerate(todo)
+        }
+        unanswered = {cell: job for job in todo for cell in job.cells}
+        try:
+            while pending:
+                ended, _ = wait(pending, timeout=REPORT_EVERY, return_when=FIRST_COMPLETED)
+                for message in _drain(messages):
+                    if isinstance(message, Outcome):
+                        del unanswered[message.cell]
+                    yield message
+                for future in ended:
+                    job = pending.pop(future)
+                    for cell in job.cells:
+                        if unanswered.pop(cell, None) is not None:
+                            yield failure(job, cell, _fault(future, settings))
+        except BaseException:
+            pool.stop()
+            raise
+
+
+def _work(job: Job, number: int, settings: Settings, messages: Queue[Progress | Outcome]) -> None:
+    """Run one job in a worker, on one thread: threads of several processes slow each other down."""
+    cv2.setNumThreads(1)
+    last = -REPORT_EVERY
+
+    def report(stage: str, done: int, total: int) -> None:
+        nonlocal last
+        if done in (0, total) or monotonic() - last >= REPORT_EVERY:
+            last = monotonic()
+            messages.put(Progress(number, stage, done, total))
+
+    with threadpool_limits(1):
+        for outcome in run(job, settings.data, settings.routes_file, report):
+            messages.put(outcome)
+
+
+def _drain(messages: Queue[Progress | Outcome]) -> Iterator[Progress | Outcome]:
+    """Everything the workers have said so far."""
+    while True:
+        try:
+            yield messages.get_nowait()
+        except Empty:
+            return
+
+
+def _fault(future: Future[None], settings: Settings) -> str:
+    """Why a job ended without answering all its cells."""
+    error = future.exception()
+    if isinstance(error, TimeoutError):
+        return f"timed out: the job took longer than {settings.timeout:g} s; allow more with --timeout"
+    if isinstance(error, ProcessExpired):
+        return f"the worker process died: {one_line(error)}"
+    return one_line(error) if error else "the job ended without an answer"

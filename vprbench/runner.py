@@ -1,0 +1,135 @@
+"""One job of a sweep: fit an agent, play one route, and score every sampling distance asked for."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Callable, Iterator
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+from vprbench.agents import build, normalise
+from vprbench.bootstrap import intervals
+from vprbench.catalogue import load_route
+from vprbench.env import RouteEnv
+from vprbench.episode import Recording, calibrate, judge, play
+from vprbench.metrics import evaluate
+from vprbench.observation import Drive
+from vprbench.plugins import one_line
+from vprbench.protocols import DescriptorLocalizer, Localizer
+from vprbench.provenance import data_checksum, versions
+from vprbench.response_matrix import Report, ResponseMatrix, silent
+from vprbench.route import Route
+from vprbench.sweep import Cell, Job
+from vprbench.trace import Trace
+
+__all__ = ["Outcome", "Place", "failure", "run"]
+
+# The rules behind every number, stated in every row.
+RULES = {
+    "tolerance_rule": "d_NN: distance from the query to its nearest learn frame",
+    "recall_denominator": "auc: correct top-1; auc_all: all queries",
+}
+
+# Plays the route at one sampling distance: the vigilance or step used, and the answers.
+Place = Callable[[float], tuple[float, Recording]]
+
+
+@dataclass(frozen=True)
+class Outcome:
+    """The answer of one cell: its row of the table, and the trace behind it (None where the cell failed)."""
+
+    cell: Cell
+    row: dict[str, Any]
+    trace: Trace | None
+
+
+def run(
+    job: Job, data: Path | None = None, routes_file: Path | None = None, report: Report = silent
+) -> Iterator[Outcome]:
+    """Answer the cells of a job one by one; a cell that fails is an outcome with its error."""
+    try:
+        route = load_route(job.route, data=data, routes=routes_file)
+        player = prepare(job, route, report)
+    except Exception as error:
+        yield from (failure(job, cell, one_line(error)) for cell in job.cells)
+        return
+    for cell in job.cells:
+        try:
+            yield _answer(job, cell, route, player)
+        except Exception as error:
+            yield failure(job, cell, one_line(error))
+
+
+def prepare(job: Job, route: Route, report: Report) -> Place:
+    """Build and fit the agent; the fastest way to play the route with it."""
+    localizer = build(job.config, job.seed)
+    report("fit", 0, 1)
+    localizer.fit([Drive(drive) for drive in route.training])
+    if isinstance(localizer, DescriptorLocalizer):
+        return _from_matrix(ResponseMatrix(route, localizer, report))
+    return _frame_by_frame(route, localizer, report)
+
+
+def _from_matrix(matrix: ResponseMatrix[Any]) -> Place:
+    """Read the answers from the frame x frame response matrix."""
+
+    def place(sampling_distance: float) -> tuple[float, Recording]:
+        sampling = matrix.sampling(sampling_distance)
+        return sampling, matrix.recording(sampling)
+
+    return place
+
+
+def _frame_by_frame(route: Route, localizer: Localizer, report: Report) -> Place:
+    """Play the environment."""
+
+    def place(sampling_distance: float) -> tuple[float, Recording]:
+        report("calibrate", 0, 1)
+        sampling = calibrate(localizer, route, sampling_distance)
+        report("play", 0, 1)
+        return sampling, play(RouteEnv(route, sampling_distance), localizer)
+
+    return place
+
+
+def _answer(job: Job, cell: Cell, route: Route, player: Place) -> Outcome:
+    """Play and score one cell."""
+    sampling, recording = player(cell.sampling_distance)
+    trace = judge(route, recording, cell.sampling_distance)
+    places = len(recording.place_frames)
+    measured = {
+        "status": "ok",
+        "error": "",
+        "environment": route.environment,
+        "split": route.split,
+        "sampling": sampling,
+        "places": places,
+        "place_spacing_m": route.learn.length / places,
+        "learn_frames": len(route.learn),
+        "queries": len(route.test),
+        "tolerance_mean_m": float(trace.tolerance_m.mean()),
+        **evaluate(trace),
+        **intervals(trace),
+        "data_checksum": data_checksum(route),
+    }
+    return Outcome(cell, _identity(job, cell) | measured, trace)
+
+
+def failure(job: Job, cell: Cell, error: str) -> Outcome:
+    """The outcome of a cell that failed."""
+    return Outcome(cell, _identity(job, cell) | {"status": "failed", "error": error}, None)
+
+
+def _identity(job: Job, cell: Cell) -> dict[str, Any]:
+    """The columns that say which cell a row answers, by which rules, with which code."""
+    return {
+        "cell": cell.id,
+        "route": cell.route,
+        "sampling_distance_m": cell.sampling_distance,
+        "agent": cell.agent,
+        "seed": cell.seed,
+        "agent_config": json.dumps(normalise(job.config), sort_keys=True),
+        **RULES,
+        **versions(),
+    }
