@@ -1,0 +1,153 @@
+"""Log-polar signatures: the gradient around each focus point, sampled finely near it and coarsely far away."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from functools import partial
+
+import numpy as np
+from jaxtyping import Float32, Int64
+from numba import njit
+from numpy.typing import NDArray
+
+from vprbench.errors import ConfigError
+from vprbench.types import Frame, Landmarks
+from vprbench_encoders.focus import FocusDetector
+from vprbench_encoders.l1 import mean_l1, mean_l1_pairs
+
+__all__ = [
+    "LogPolar",
+    "area_average",
+    "log_polar_6",
+    "log_polar_9",
+    "log_polar_12",
+    "log_polar_15",
+    "log_polar_27",
+    "log_polar_grid",
+    "sample_log_polar",
+]
+
+# Samples along the log-radius and along the angle: 54 x 54 = 2916 values, as in the paper.
+SAMPLES = 54
+
+
+def log_polar_grid(inner: float, outer: float) -> Float32[np.ndarray, "2 samples"]:
+    """Offsets (du, dv) of the samples from the centre, px; row-major over log-radius, then angle.
+
+    Row i lies at radius inner (outer / inner)^(i / 53); column j at 2 pi j / 54, turning from +u towards +v.
+    """
+    radius = np.geomspace(inner, outer, SAMPLES)[:, None]
+    angle = 2 * np.pi * np.arange(SAMPLES) / SAMPLES
+    return np.stack([radius * np.cos(angle), radius * np.sin(angle)]).reshape(2, -1).astype(np.float32)
+
+
+@njit(cache=True)
+def _sample(image: NDArray[np.float32], points: NDArray[np.float32], grid: NDArray[np.float32]) -> NDArray[np.float32]:
+    rows, columns = image.shape
+    right, bottom = np.float32(columns - 1), np.float32(rows - 1)
+    one, zero = np.float32(1), np.float32(0)
+    values = np.empty((len(points), grid.shape[1]), np.float32)
+    for point in range(len(points)):
+        for i in range(grid.shape[1]):
+            u = min(max(points[point, 0] + grid[0, i], zero), right)
+            v = min(max(points[point, 1] + grid[1, i], zero), bottom)
+            left, top = min(int(u), columns - 2), min(int(v), rows - 2)
+            a, b = u - np.float32(left), v - np.float32(top)
+            upper = (one - a) * image[top, left] + a * image[top, left + 1]
+            lower = (one - a) * image[top + 1, left] + a * image[top + 1, left + 1]
+            values[point, i] = (one - b) * upper + b * lower
+    return values
+
+
+def sample_log_polar(
+    image: Float32[np.ndarray, "height width"],
+    points: Float32[np.ndarray, "points 2"],
+    grid: Float32[np.ndarray, "2 samples"],
+) -> Float32[np.ndarray, "points samples"]:
+    """The image at every offset of the grid from every point (u, v), bilinear, the border repeated outwards."""
+    return _sample(image, points, grid)
+
+
+def area_average(size: int) -> Float32[np.ndarray, "size 54"]:
+    """Weights that average 54 samples into `size` cells of equal width; a sample cut by an edge counts in part."""
+    edges = np.linspace(0, SAMPLES, size + 1)
+    low, high = edges[:-1, None], edges[1:, None]
+    sample = np.arange(SAMPLES)
+    overlap = np.clip(np.minimum(high, sample + 1) - np.maximum(low, sample), 0, None)
+    return (overlap * size / SAMPLES).astype(np.float32)
+
+
+class LogPolar:
+    """The LPMP signature: a log-polar map of the gradient around each focus point, scaled to 0..1.
+
+    Nothing is learned. With `size` below 54 the same map is area-averaged to size x size: the control that tells
+    what compression alone buys. Alike = 1 - mean |x - w|.
+
+    Args:
+        size: rows and columns of the signature, 1..54; 54 is the paper's.
+        inner_radius: of the first row, px (our choice).
+        outer_radius: of the last row, px (our choice).
+        alpha, sigmas, points, radius, margin, floor: of the focus points; see `FocusDetector`.
+    """
+
+    def __init__(
+        self,
+        *,
+        size: int = SAMPLES,
+        inner_radius: float = 2.0,
+        outer_radius: float = 27.0,
+        alpha: float = 1.0,
+        sigmas: tuple[float, float] = (2.0, 4.0),
+        points: int = 25,
+        radius: float = 20.0,
+        margin: int = 27,
+        floor: float = 1e-3,
+    ) -> None:
+        if not 1 <= size <= SAMPLES:
+            raise ConfigError(f"log-polar: size must be 1..{SAMPLES}, not {size}")
+        if not 0 < inner_radius < outer_radius:
+            raise ConfigError(f"log-polar: radii must rise from above 0, not {inner_radius}, {outer_radius}")
+        self.size = size
+        self.focus = FocusDetector(alpha=alpha, sigmas=sigmas, points=points, radius=radius, margin=margin, floor=floor)
+        self._grid = log_polar_grid(inner_radius, outer_radius)
+        self._weights = area_average(size)
+
+    def fit(self, frames: Sequence[Frame]) -> None:
+        """Do nothing: a log-polar map is not learned."""
+
+    def encode(self, frame: Frame) -> Landmarks:
+        """The log-polar maps of the frame's focus points, each divided by its own maximum (our choice)."""
+        gradient = self.focus.gradient(frame)
+        points = self.focus.find(gradient)
+        maps = sample_log_polar(gradient, points, self._grid)
+        maps /= maps.max(axis=1, keepdims=True, initial=np.finfo(np.float32).tiny)
+        return Landmarks(self._shrink(maps), points)
+
+    def match(
+        self, queries: Float32[np.ndarray, "points size"], memory: Float32[np.ndarray, "units size"]
+    ) -> Float32[np.ndarray, "points units"]:
+        """How alike every query is to every stored signature: 1 - mean |x - w|."""
+        return np.float32(1) - mean_l1(queries, memory)
+
+    def match_pairs(
+        self,
+        queries: Float32[np.ndarray, "points size"],
+        memory: Float32[np.ndarray, "units size"],
+        query_index: Int64[np.ndarray, " pairs"],
+        memory_index: Int64[np.ndarray, " pairs"],
+    ) -> Float32[np.ndarray, " pairs"]:
+        """The same as `match`, for chosen pairs only."""
+        return np.float32(1) - mean_l1_pairs(queries, memory, query_index, memory_index)
+
+    def _shrink(self, maps: Float32[np.ndarray, "points 2916"]) -> Float32[np.ndarray, "points size2"]:
+        if self.size == SAMPLES:
+            return maps
+        square = maps.reshape(-1, SAMPLES, SAMPLES)
+        return (self._weights @ square @ self._weights.T).reshape(len(maps), self.size**2)
+
+
+log_polar_27 = partial(LogPolar, size=27)
+log_polar_15 = partial(LogPolar, size=15)
+log_polar_12 = partial(LogPolar, size=12)
+log_polar_9 = partial(LogPolar, size=9)
+log_polar_6 = partial(LogPolar, size=6)
