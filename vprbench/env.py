@@ -23,6 +23,10 @@ __all__ = ["Phase", "RouteEnv"]
 
 Phase = Literal["learn", "record", "test"]
 
+# Columns u and rows v, pixels.
+Points = Float32[np.ndarray, "points 2"]
+NO_POINTS: Points = np.empty((0, 2), np.float32)
+
 
 class RouteEnv(gym.Env[Observation, dict[str, Any]]):
     """One route as a Gymnasium environment; one frame is one step, one drive one episode.
@@ -73,7 +77,8 @@ class RouteEnv(gym.Env[Observation, dict[str, Any]]):
         self._played: set[Phase] = set()
         self._index: int | None = None
         self._hypothesis = NO_PLACE
-        self._points: Float32[np.ndarray, "points 2"] = np.empty((0, 2), np.float32)
+        self._marked: Points = NO_POINTS
+        self._shown: tuple[int, Points] = (0, NO_POINTS)
 
     @property
     def drive(self) -> Traverse:
@@ -92,7 +97,7 @@ class RouteEnv(gym.Env[Observation, dict[str, Any]]):
         super().reset(seed=seed)
         self._enter(str((options or {}).get("phase", "learn")))
         self._index, self._hypothesis = 0, NO_PLACE
-        self._points = np.empty((0, 2), np.float32)
+        self._marked, self._shown = NO_POINTS, (0, NO_POINTS)
         return observe(self.drive, 0), self._info(0)
 
     def step(self, action: dict[str, Any]) -> tuple[Observation, float, bool, bool, dict[str, Any]]:
@@ -103,25 +108,23 @@ class RouteEnv(gym.Env[Observation, dict[str, Any]]):
         info = self._info(index)
         reward = self._judge(index, place, info)
         self._hypothesis = place
-        self._points = np.empty((0, 2), np.float32)
+        self._marked, self._shown = NO_POINTS, (index, self._marked)
         ended = index + 1 == len(self.drive)
         self._index = None if ended else index + 1
         if ended:
             self._played.add(self._phase)
         return observe(self.drive, index if ended else index + 1), reward, ended, False, info
 
-    def mark(self, points: Float32[np.ndarray, "points 2"]) -> None:
-        """Show these focus points (columns u, rows v) of the present frame when it is rendered."""
-        self._points = points
+    def mark(self, points: Points) -> None:
+        """Show these focus points of the present frame when its answer is rendered."""
+        self._marked = points
 
     def render(self) -> UInt8[np.ndarray, "height width 3"] | None:
-        """The present frame with its focus points, the retrieved place's frame, and the map."""
+        """The last answered frame with its focus points, the retrieved place's frame, and the map."""
         if self.render_mode is None:
             return None
-        index = len(self.drive) - 1 if self._index is None else self._index
-        return draw(
-            Scene(self.route, self.drive, self._phase, index, self._points, self.place_frames, self._hypothesis)
-        )
+        scene = Scene(self.route, self.drive, self._phase, *self._shown, self.place_frames, self._hypothesis)
+        return draw(scene)
 
     def _enter(self, phase: str) -> None:
         """Make `phase` the present one, and drop what it will build anew."""

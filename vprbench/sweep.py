@@ -12,8 +12,8 @@ from typing import Annotated, Any
 
 from pydantic import BaseModel, ConfigDict, Field, ValidationError
 
-from vprbench.agents import is_seeded, normalise
-from vprbench.errors import ConfigError, nearest
+from vprbench.agents import Config, is_seeded, validate
+from vprbench.errors import ConfigError, PluginError, nearest
 
 __all__ = ["Cell", "Job", "Sweep", "builtin_sweeps", "jobs", "load_sweep"]
 
@@ -75,10 +75,18 @@ class Sweep(BaseModel):
         """Every cell of the grid, in the order of the TOML."""
         for route in dict.fromkeys(self.routes):
             for agent, config in self.agents.items():
-                seeds = self.seeds if is_seeded(config) else self.seeds[:1]
+                seeds = self.seeds if _is_seeded(config) else self.seeds[:1]
                 for seed in dict.fromkeys(seeds):
                     for distance in dict.fromkeys(self.sampling_distances):
                         yield Cell(route, agent, distance, seed)
+
+
+def _is_seeded(config: Config) -> bool:
+    """Whether an agent runs once for each seed; one that does not load fails once."""
+    try:
+        return is_seeded(config)
+    except PluginError:
+        return False
 
 
 def jobs(sweep: Sweep, cells: Sequence[Cell]) -> list[Job]:
@@ -129,9 +137,12 @@ def parse_sweep(path: Path) -> Sweep:
         raise ConfigError(f"{path}: {_explain(error)}") from error
     for agent, config in sweep.agents.items():
         try:
-            normalise(config)
+            validate(config)
         except ConfigError as error:
             raise ConfigError(f"{path}: agents.{agent}: {error}") from error
+        except PluginError:
+            # A plug-in that does not load fails its own cells, with its error in their rows, and no others.
+            continue
     return sweep
 
 

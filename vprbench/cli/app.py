@@ -69,9 +69,9 @@ def run(
     ] = None,
 ) -> None:
     """Measure one agent on one route, and print its scores."""
-    from vprbench.cli.single import run_command
+    from vprbench.cli.single import Single, run_command
 
-    run_command(route, agent, distance, seed, data, routes, trace, video)
+    run_command(Single(route, agent, distance, seed, data, routes, trace, video))
 
 
 @app.command(epilog="Example: vprbench table results/streets.csv --columns route --metric auc_all --format latex")

@@ -6,6 +6,7 @@ from collections.abc import Sequence
 from types import TracebackType
 
 from rich.console import Console
+from rich.markup import escape
 from rich.progress import BarColumn, Progress, TaskID, TextColumn, TimeElapsedColumn, TimeRemainingColumn
 
 from vprbench.pool import Progress as Step
@@ -37,6 +38,7 @@ class SweepProgress:
         )
         self._cells = sum(len(job.cells) for job in jobs)
         self._finished = 0
+        self._told: set[str] = set()
         self._shown: dict[int, TaskID] = {}
         self._done = [0.0] * len(jobs)
         self._whole = self._bars.add_task("sweep", total=len(jobs))
@@ -66,7 +68,17 @@ class SweepProgress:
             if number in self._shown:
                 self._bars.remove_task(self._shown.pop(number))
         self._bars.update(self._whole, description=f"sweep: {self._finished} of {self._cells} cells")
-        self.console.print(f"{self._finished:>4}/{self._cells}  {_line(outcome)}", highlight=False)
+        self.console.print(f"{self._finished:>4}/{self._cells}  {self._line(outcome)}", highlight=False)
+
+    def _line(self, outcome: Outcome) -> str:
+        """A finished cell in one line; an error that many cells share is told once."""
+        row = outcome.row
+        if row["status"] != "ok":
+            told = row["error"] in self._told
+            self._told.add(row["error"])
+            return f"[red]{outcome.cell.id}  failed: {'the same' if told else escape(row['error'])}[/red]"
+        scores = f"AUC {row['auc']:.3f}, over all queries {row['auc_all']:.3f}, top-1 {row['accuracy']:.3f}"
+        return f"{outcome.cell.id}  {row['places']} places, {scores}"
 
     def _advance(self, number: int, fraction: float, description: str) -> None:
         """Move a job's bar and the whole one; neither ever goes back."""
@@ -84,12 +96,3 @@ def _fraction(step: Step) -> float:
             return before + share * step.done / max(step.total, 1)
         before += share
     return 0.0
-
-
-def _line(outcome: Outcome) -> str:
-    """A finished cell in one line."""
-    row = outcome.row
-    if row["status"] != "ok":
-        return f"[red]{outcome.cell.id}  failed: {row['error']}[/red]"
-    scores = f"AUC {row['auc']:.3f}, over all queries {row['auc_all']:.3f}, top-1 {row['accuracy']:.3f}"
-    return f"{outcome.cell.id}  {row['places']} places, {scores}"

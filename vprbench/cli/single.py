@@ -2,14 +2,20 @@
 
 from __future__ import annotations
 
+import shutil
 import tomllib
+from collections.abc import Iterator
+from contextlib import contextmanager
+from dataclasses import dataclass
 from pathlib import Path
+from tempfile import TemporaryDirectory
 from typing import Any
 
+import gymnasium as gym
 from gymnasium.wrappers import RecordVideo
 from rich.console import Console
 
-from vprbench.agents import build, label
+from vprbench.agents import Config, build, label
 from vprbench.bootstrap import intervals
 from vprbench.catalogue import load_route
 from vprbench.env import RouteEnv
@@ -17,42 +23,66 @@ from vprbench.episode import calibrate, judge, play
 from vprbench.errors import ConfigError
 from vprbench.metrics import evaluate
 from vprbench.observation import Drive
+from vprbench.protocols import DescriptorLocalizer, Localizer
+from vprbench.response_matrix import ResponseMatrix
+from vprbench.route import Route
+from vprbench.trace import Trace
+from vprbench.types import Observation
 
-__all__ = ["run_command"]
+__all__ = ["Single", "run_command"]
 
 
-def run_command(
-    route_name: str,
-    agent: str,
-    distance: float,
-    seed: int,
-    data: Path | None,
-    routes: Path | None,
-    trace_file: Path | None,
-    video: Path | None,
-) -> None:
+@dataclass(frozen=True)
+class Single:
+    """The options of `vprbench run`; the command's help says what each means."""
+
+    route: str
+    agent: str
+    distance: float
+    seed: int
+    data: Path | None
+    routes: Path | None
+    trace: Path | None
+    video: Path | None
+
+
+def run_command(request: Single) -> None:
     """Play one cell through the environment and print its scores; faults are not caught, as in a sweep."""
-    console, config = Console(), _agent(agent)
-    route, localizer = load_route(route_name, data, routes), build(config, seed)
-    env = RouteEnv(route, distance, render_mode="rgb_array" if video else None)
+    console, config = Console(), _agent(request.agent)
+    route, localizer = load_route(request.route, request.data, request.routes), build(config, request.seed)
     with Console(stderr=True).status("fit") as status:
         localizer.fit([Drive(drive) for drive in route.training])
-        status.update("calibrate")
-        sampling = calibrate(localizer, route, distance)
+        status.update("find how densely to recruit")
+        sampling = _sampling(localizer, route, request.distance)
+        localizer.clear(sampling)
         status.update("learn, record and test")
-        recording = play(_filmed(env, video), localizer)
-    trace = judge(route, recording, distance)
-    if trace_file is not None:
-        trace.save(trace_file)
-    scores, spread = evaluate(trace), intervals(trace)
-    console.print(f"[bold]{label(config)}[/bold] on {route.name}, a place every {distance:g} m", highlight=False)
+        with _environment(route, localizer, request) as env:
+            recording = play(env, localizer)
+    trace = judge(route, recording, request.distance)
+    if request.trace is not None:
+        trace.save(request.trace)
+    console.print(f"[bold]{label(config)}[/bold] on {route.name}, a place every {request.distance:g} m")
     console.print(f"{localizer.recruiting} {sampling:.6g}: {len(recording.place_frames)} places, {len(trace)} queries")
-    for name, value in scores.items():
+    _print_scores(trace, console)
+
+
+def _sampling(localizer: Localizer, route: Route, distance: float) -> float:
+    """The vigilance or step for a sampling distance, the fast way where the localizer allows it."""
+    if isinstance(localizer, DescriptorLocalizer):
+        return ResponseMatrix(route, localizer).sampling(distance)
+    return calibrate(localizer, route, distance)
+
+
+def _print_scores(trace: Trace, console: Console) -> None:
+    """Every metric in a line, with its interval where it has one."""
+    spread = intervals(trace)
+    for name, value in evaluate(trace).items():
         low, high = spread.get(f"{name}_low"), spread.get(f"{name}_high")
-        console.print(f"{name:32} {value:9.4f}" + (f"   95 % {low:.4f} .. {high:.4f}" if low is not None else ""))
+        interval = "" if low is None else f"   95 % {low:.4f} .. {high:.4f}"
+        console.print(f"{name:36} {value:9.4f}{interval}", highlight=False)
 
 
-def _agent(text: str) -> str | dict[str, Any]:
+def _agent(text: str) -> Config:
     """An agent's configuration from the command line: a bare name, or the inside of a TOML table."""
     if "=" not in text:
         return text
@@ -63,10 +93,38 @@ def _agent(text: str) -> str | dict[str, Any]:
     return table
 
 
-def _filmed(env: RouteEnv, video: Path | None) -> Any:  # noqa: ANN401 - a wrapper or the environment itself
-    """The environment, filmed in its third phase if a file is given."""
-    if video is None:
-        return env
-    return RecordVideo(
-        env, str(video.parent), lambda episode: episode == 2, name_prefix=video.stem, disable_logger=True
-    )
+class _Marked(gym.Wrapper[Observation, dict[str, Any], Observation, dict[str, Any]]):
+    """Marks the focus points of the localizer's encoder, if it has one, on every rendered frame."""
+
+    def __init__(self, env: RouteEnv, localizer: Localizer) -> None:
+        super().__init__(env)
+        self.route_env, self.encoder = env, getattr(localizer, "encoder", None)
+
+    def reset(self, **options: Any) -> tuple[Observation, dict[str, Any]]:  # noqa: ANN401 - as Gymnasium has it
+        observation, info = super().reset(**options)
+        return self._mark(observation), info
+
+    def step(self, action: dict[str, Any]) -> tuple[Observation, Any, bool, bool, dict[str, Any]]:
+        observation, *rest = super().step(action)
+        return (self._mark(observation), *rest)
+
+    def _mark(self, observation: Observation) -> Observation:
+        if self.encoder is not None:
+            self.route_env.mark(self.encoder.encode(observation["frame"]).points)
+        return observation
+
+
+@contextmanager
+def _environment(route: Route, localizer: Localizer, request: Single) -> Iterator[gym.Env[Any, Any]]:
+    """The environment, its test phase filmed if that is asked for."""
+    env = RouteEnv(route, request.distance, render_mode="rgb_array" if request.video else None)
+    if request.video is None:
+        yield env
+        return
+    with TemporaryDirectory() as folder:
+        # Episodes count from 0: learn, record, test.
+        films = Path(folder, "films")
+        filmed = RecordVideo(_Marked(env, localizer), str(films), lambda episode: episode == 2, disable_logger=True)
+        yield filmed
+        filmed.close()
+        shutil.move(next(films.glob("*.mp4")), request.video)
