@@ -1,0 +1,94 @@
+"""The landmarks of every learned place, in contiguous arrays that grow."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from typing import NamedTuple, Self
+
+import numpy as np
+from jaxtyping import Float32, Int64
+
+from vprbench.errors import PluginError
+
+__all__ = ["UnitMemory", "View"]
+
+
+class View(NamedTuple):
+    """What a place stores, and a query shows: its landmarks' signatures and azimuths.
+
+    Shapes and units:
+        signatures: float32 (points, size).
+        azimuths: float32 (points,), radians in -pi..pi.
+    """
+
+    signatures: Float32[np.ndarray, "points size"]
+    azimuths: Float32[np.ndarray, " points"]
+
+
+class UnitMemory:
+    """One unit for each learned landmark, place after place; adding costs the same however many there are.
+
+    Attributes:
+        units: how many landmarks are stored.
+    """
+
+    def __init__(self) -> None:
+        self.units = 0
+        self._starts = [0]
+        self._signatures = np.empty((0, 0), np.float32)
+        self._azimuths = np.empty(0, np.float32)
+
+    @classmethod
+    def of(cls, views: Iterable[View]) -> Self:
+        """A memory of these places."""
+        memory = cls()
+        for view in views:
+            memory.add(view)
+        return memory
+
+    @property
+    def starts(self) -> Int64[np.ndarray, " places_and_end"]:
+        """The first unit of each place, and the end of the last."""
+        return np.array(self._starts, np.int64)
+
+    @property
+    def signatures(self) -> Float32[np.ndarray, "units size"]:
+        """Signature of each unit; a view that the next `add` may leave behind."""
+        return self._signatures[: self.units]
+
+    @property
+    def azimuths(self) -> Float32[np.ndarray, " units"]:
+        """Azimuth of each unit, radians; a view that the next `add` may leave behind."""
+        return self._azimuths[: self.units]
+
+    def __len__(self) -> int:
+        return len(self._starts) - 1
+
+    def add(self, view: View) -> int:
+        """Store a place; its index. A place without landmarks has no unit.
+
+        Raises:
+            PluginError: its signatures are of another size than those stored.
+        """
+        end = self.units + len(view.azimuths)
+        if end > self.units:
+            self._reserve(end, view.signatures.shape[1])
+            self._signatures[self.units : end] = view.signatures
+            self._azimuths[self.units : end] = view.azimuths
+        self.units = end
+        self._starts.append(end)
+        return len(self) - 1
+
+    def _reserve(self, units: int, size: int) -> None:
+        signatures, azimuths = self.signatures, self.azimuths
+        if self.units and size != signatures.shape[1]:
+            raise PluginError(
+                f"the encoder gives signatures of {size} values, the places stored have {signatures.shape[1]}:"
+                " clear them after fitting an encoder again"
+            )
+        if units > len(self._azimuths):
+            # Doubling makes all the copies together cost less than two writes a unit.
+            self._signatures = np.empty((2 * units, size), np.float32)
+            self._azimuths = np.empty(2 * units, np.float32)
+            if self.units:
+                self._signatures[: self.units], self._azimuths[: self.units] = signatures, azimuths
