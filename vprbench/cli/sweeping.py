@@ -10,7 +10,7 @@ from pathlib import Path
 
 from rich.console import Console
 
-from vprbench.catalogue import load_route
+from vprbench.catalogue import catalogue, load_route
 from vprbench.cli.progress import SweepProgress
 from vprbench.plan import Plan, plan
 from vprbench.pool import Progress, Settings, run_all
@@ -64,6 +64,9 @@ def _settings(request: Request, sweep: Sweep, question: Path) -> Settings:
 
 def _plan(request: Request, sweep: Sweep, table: ResultTable, settings: Settings) -> Plan:
     """What is to be measured; every route must be known before anything runs."""
+    known = catalogue(settings.routes_file)
+    for route in sweep.routes:
+        known.entry(route)
     cells = list(sweep.cells())
     if request.filter is not None:
         cells = matching(cells, request.filter)
