@@ -1,0 +1,40 @@
+"""Random grain for surfaces: fractal noise, and the empty images on which textures are painted."""
+
+from __future__ import annotations
+
+import cv2
+import numpy as np
+from jaxtyping import Float32
+
+from vprbench.street.texture import Image
+
+__all__ = ["Luma", "fractal", "opaque", "rectangle", "with_alpha"]
+
+# Reflectance 0..1 of a surface.
+Luma = Float32[np.ndarray, "height width"]
+
+
+def fractal(rng: np.random.Generator, height: int, width: int, coarsest: int = 32) -> Luma:
+    """Noise about 0 with standard deviation near 1 and equal power in every octave up to `coarsest` texels."""
+    total = np.zeros((height, width), np.float32)
+    scale, octaves = 1, 0
+    while scale <= coarsest:
+        grid = rng.standard_normal((max(1, height // scale), max(1, width // scale)), np.float32)
+        total += cv2.resize(grid, (width, height), interpolation=cv2.INTER_LINEAR)
+        scale, octaves = scale * 2, octaves + 1
+    return total / np.float32(np.sqrt(octaves))
+
+
+def rectangle(luma: Luma, left: float, top: float, right: float, bottom: float, value: float) -> None:
+    """Fill a rectangle given in texels."""
+    luma[max(0, round(top)) : max(0, round(bottom)), max(0, round(left)) : max(0, round(right))] = value
+
+
+def opaque(luma: Luma) -> Image:
+    """A texture without holes."""
+    return with_alpha(luma, np.ones_like(luma))
+
+
+def with_alpha(luma: Luma, alpha: Luma) -> Image:
+    """A texture with holes."""
+    return np.stack([np.clip(luma, 0.0, 1.0) * alpha, alpha], axis=-1).astype(np.float32)
