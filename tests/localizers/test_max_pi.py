@@ -141,6 +141,35 @@ def test_streaming_equals_the_matrix_bitwise_with_log_polar() -> None:
     assert 0 < matrix[0, 1] < 1
 
 
+def test_streaming_equals_the_matrix_bitwise_with_matrix_products() -> None:
+    class Cosine(TableEncoder):
+        def match(self, queries: Matrix, memory: Matrix) -> Matrix:
+            return (queries @ memory.T) / np.outer(*(np.linalg.norm(m, axis=1) for m in (queries, memory)))
+
+    rng = np.random.default_rng(0)
+    points = np.full((25, 2), 314, np.float32)
+    encoder = Cosine([Landmarks(rng.random((25, 225), np.float32), points) for _ in range(20)])
+    agent = MaxPi(encoder, recognition_threshold=0.5, vigilance=1.0)
+    frames = drive(0, 20)
+    views = [agent.describe(frame) for frame in frames]
+    streamed = []
+    for frame in frames:
+        agent.learn(frame)
+        streamed.append(agent.respond(frame))
+    for row, responses in zip(agent.compare(views, views), streamed, strict=True):
+        np.testing.assert_array_equal(responses, row[: len(responses)])
+
+
+def test_an_encoder_that_compares_pairs_is_never_asked_for_all() -> None:
+    class Only(PairTableEncoder):
+        def match(self, queries: Matrix, memory: Matrix) -> Matrix:
+            raise AssertionError
+
+    agent = MaxPi(Only(levels(0.0)), recognition_threshold=0.5)
+    agent.learn(observe(0))
+    assert agent.respond(observe(0)).tolist() == [1.0]
+
+
 def test_a_place_recruits_where_no_place_responds_as_strongly_as_the_vigilance() -> None:
     agent = MaxPi(TableEncoder(levels(0.0, 0.1, 0.3, 0.35, 0.05)), vigilance=0.85, recognition_threshold=0.0)
     assert [agent.learn(observe(i)) for i in range(5)] == [0, None, 1, None, None]
