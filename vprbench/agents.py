@@ -18,7 +18,7 @@ from dataclasses import dataclass
 from hashlib import sha256
 from typing import Any, TypeAlias, cast
 
-from vprbench.errors import ConfigError, PluginError
+from vprbench.errors import ConfigError, PluginError, VprbenchError
 from vprbench.options import check_names, parameters, typed
 from vprbench.plugins import Factory, Kind, Plugin, find, missing, one_line, plugins
 from vprbench.protocols import Encoder, Localizer
@@ -51,10 +51,10 @@ def build_encoder(config: Config, seed: int = 0) -> Encoder:
         return cast(Encoder, _parse("encoder", config).make(seed))
 
 
-def validate(config: Config) -> None:
+def validate(config: Config, kind: Kind = "localizer") -> None:
     """Raise what `build` would, short of constructing anything."""
-    with _named(config, "localizer"):
-        _parse("localizer", config)
+    with _named(config, kind):
+        _parse(kind, config)
 
 
 def is_seeded(config: Config) -> bool:
@@ -91,6 +91,8 @@ class _Part:
             options["seed"] = seed
         try:
             made = self.factory(**options)
+        except VprbenchError as error:
+            raise ConfigError(f"{self.plugin}: {error}") from error
         except Exception as error:
             raise ConfigError(f"{self.plugin} refuses its options: {one_line(error)}") from error
         if lacks := missing(self.plugin.kind, made):

@@ -6,6 +6,7 @@ from collections.abc import Sequence
 from typing import ClassVar
 
 import numpy as np
+import numpy.typing as npt
 
 from vprbench.protocols import Encoder, Recruiting
 from vprbench.types import Landmarks, Observation, Responses
@@ -33,11 +34,22 @@ class NearestView:
         """Recruit where no place responds as much as the vigilance."""
         if self.places and self.respond(observation).max() >= self.vigilance:
             return None
-        self.places.append(self.encoder.encode(observation["frame"]))
+        self.places.append(self.describe(observation))
         return len(self.places) - 1
 
     def respond(self, observation: Observation) -> Responses:
         """Mean best match, place by place."""
-        seen = self.encoder.encode(observation["frame"]).signatures
-        best = [self.encoder.match(seen, place.signatures).max(axis=1, initial=0).sum() for place in self.places]
-        return np.asarray(np.clip(np.array(best) / max(len(seen), 1) - self.floor, 0, 1), np.float32)
+        return self.compare([self.describe(observation)], self.places)[0]
+
+    def describe(self, observation: Observation) -> Landmarks:
+        """The landmarks."""
+        return self.encoder.encode(observation["frame"])
+
+    def compare(self, queries: Sequence[Landmarks], places: Sequence[Landmarks]) -> npt.NDArray[np.float32]:
+        """Mean best match of each pair."""
+        responses = np.zeros((len(queries), len(places)), np.float32)
+        for row, column in np.ndindex(responses.shape):
+            seen = queries[row].signatures
+            best = self.encoder.match(seen, places[column].signatures).max(axis=1, initial=0)
+            responses[row, column] = np.clip(best.sum() / max(len(seen), 1) - self.floor, 0, 1)
+        return responses

@@ -9,7 +9,7 @@ import numpy as np
 import numpy.typing as npt
 
 from vprbench.protocols import Recruiting
-from vprbench.types import Observation, Responses
+from vprbench.types import Frame, Observation, Responses
 
 Thumb = npt.NDArray[np.float32]
 
@@ -46,19 +46,14 @@ class Thumbnail:
         if self.places and self.since < self.step:
             return None
         self.since = 0.0
-        self.places.append(self.describe(observation))
+        self.places.append(self._shrink(observation["frame"]))
         return len(self.places) - 1
 
     def respond(self, observation: Observation) -> Responses:
-        """How alike each place's thumbnail is."""
-        return self.compare([self.describe(observation)], self.places)[0]
+        """One minus the mean difference from each place's thumbnail."""
+        seen = self._shrink(observation["frame"])
+        away = [float(np.abs(seen - place).mean()) * self.gain for place in self.places]
+        return np.asarray(np.clip(1 - np.array(away), 0, 1), np.float32)
 
-    def describe(self, observation: Observation) -> Thumb:
-        """The frame, shrunk."""
-        small = observation["frame"][:: self.shrink, :: self.shrink]
-        return np.asarray(small / 255, np.float32)
-
-    def compare(self, queries: Sequence[Thumb], places: Sequence[Thumb]) -> npt.NDArray[np.float32]:
-        """One minus the mean difference of each pair."""
-        away = [[float(np.abs(q - p).mean()) * self.gain for p in places] for q in queries]
-        return np.asarray(np.clip(1 - np.array(away).reshape(len(queries), len(places)), 0, 1), np.float32)
+    def _shrink(self, frame: Frame) -> Thumb:
+        return np.divide(frame[:: self.shrink, :: self.shrink], 255, dtype=np.float32)

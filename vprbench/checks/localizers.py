@@ -1,0 +1,273 @@
+"""What the protocol asks of a localizer, demand by demand."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from copy import deepcopy
+from functools import cached_property
+from typing import Any, get_args
+
+import numpy as np
+from jaxtyping import Float32
+
+from vprbench.checks.check import Check, Suite, expect
+from vprbench.checks.samples import drive, flat_frame, training_drives
+from vprbench.plugins import missing
+from vprbench.protocols import DescriptorLocalizer, Localizer, Recruiting
+from vprbench.types import Observation
+
+__all__ = ["localizer_checks"]
+
+
+def localizer_checks(factory: Callable[[], Localizer]) -> Iterator[Check]:
+    """Every check of a localizer; `factory` makes a new one, and always the same.
+
+    The checks share one fitted localizer, so that one that is slow to learn need not learn in each.
+    """
+    return _suite.checks(_Subject(factory))
+
+
+class _Subject:
+    """The localizer under test, fitted when first needed, and a drive to learn."""
+
+    def __init__(self, factory: Callable[[], Localizer]) -> None:
+        self.factory = factory
+
+    @cached_property
+    def fitted(self) -> Localizer:
+        return self.fit()
+
+    @property
+    def drive(self) -> list[Observation]:
+        """Six views, copied: what a localizer writes into them, no other check sees."""
+        return deepcopy(self._views[:-1])
+
+    @property
+    def unseen(self) -> Observation:
+        """A view that the drive does not show."""
+        return deepcopy(self._views[-1])
+
+    @cached_property
+    def _views(self) -> list[Observation]:
+        return drive(7)
+
+    def fit(self) -> Localizer:
+        """A new localizer that has trained off the road."""
+        localizer = self.factory()
+        localizer.fit(training_drives())
+        return localizer
+
+    def cleared(self, sampling: float | None = None) -> Localizer:
+        """The localizer without places; by default at the vigilance or step that makes every frame a place."""
+        dense = 1.0 if self.fitted.recruiting == "vigilance" else 0.5
+        self.fitted.clear(dense if sampling is None else sampling)
+        return self.fitted
+
+    def learned(self) -> tuple[Localizer, list[Observation]]:
+        """The localizer after the drive, and the observations that became places."""
+        localizer = self.cleared()
+        return localizer, [seen for seen in self.drive if localizer.learn(seen) is not None]
+
+
+_suite = Suite[_Subject]()
+
+
+def _answers(localizer: Localizer, observations: Sequence[Observation]) -> Float32[np.ndarray, "queries places"]:
+    return np.stack([localizer.respond(observation) for observation in observations])
+
+
+def _blind(observation: Observation) -> Observation:
+    return Observation(frame=observation["frame"], heading=observation["heading"], camera=observation["camera"])
+
+
+@_suite.add
+def _has_every_method(subject: _Subject) -> None:
+    lacks = missing("localizer", subject.factory())
+    asked = "a Localizer has recruiting, fit, clear, learn and respond"
+    expect(not lacks, f"{asked}; this one lacks {', '.join(lacks)}")
+
+
+@_suite.add
+def _says_what_recruits(subject: _Subject) -> None:
+    known, said = get_args(Recruiting), subject.factory().recruiting
+    expect(said in known, f"recruiting is one of {', '.join(map(repr, known))}, not {said!r}")
+
+
+@_suite.add
+def _fit_is_repeatable(subject: _Subject) -> None:
+    localizer, places = subject.learned()
+    before = _answers(localizer, subject.drive)
+    again = subject.fit()
+    again.clear(1.0 if again.recruiting == "vigilance" else 0.5)
+    for place in places:
+        again.learn(place)
+    same = np.array_equal(_answers(again, subject.drive), before)
+    expect(same, "the same seed and drives fit the same localizer: draw from the seed")
+
+
+@_suite.add
+def _is_silent_without_places(subject: _Subject) -> None:
+    responses = subject.cleared().respond(subject.unseen)
+    expect(
+        responses.shape == (0,),
+        f"without places, at first and after clear, respond gives shape (0,), not {responses.shape}",
+    )
+
+
+@_suite.add
+def _numbers_places_in_order(subject: _Subject) -> None:
+    localizer = subject.cleared()
+    given = [localizer.learn(seen) for seen in subject.drive for _ in range(2)]
+    places = [place for place in given if place is not None]
+    asked = all(type(place) is int for place in places) and places == list(range(len(places)))
+    expect(asked, f"learn gives the ints 0, 1, ... to new places and None otherwise, not {given!r}")
+
+
+@_suite.add
+def _recruits_as_often_as_asked(subject: _Subject) -> None:
+    if subject.fitted.recruiting == "step":
+        asked, sparse, places = "with frames 1 m apart, step 2 recruits every other one", 2.0, [0, 2, 4]
+    else:
+        asked, sparse, places = "vigilance 0 recruits the first frame, and no other", 0.0, [0]
+    localizer = subject.cleared(sparse)
+    recruited = [index for index, seen in enumerate(subject.drive) if localizer.learn(seen) is not None]
+    expect(recruited == places, f"{asked}; frames {recruited} were")
+    _, every = subject.learned()
+    expect(len(every) == len(subject.drive), "vigilance 1, or a step below the spacing, recruits every new view")
+
+
+@_suite.add
+def _responds_once_a_place(subject: _Subject) -> None:
+    localizer, places = subject.learned()
+    shape = localizer.respond(subject.unseen).shape
+    expect(shape == (len(places),), f"with {len(places)} places respond gives shape ({len(places)},), not {shape}")
+
+
+@_suite.add
+def _responds_in_float32(subject: _Subject) -> None:
+    localizer, _ = subject.learned()
+    dtype = localizer.respond(subject.unseen).dtype
+    expect(dtype == np.float32, f"responses are float32, not {dtype}")
+
+
+@_suite.add
+def _responds_in_0_1(subject: _Subject) -> None:
+    localizer, _ = subject.learned()
+    responses = _answers(localizer, [*subject.drive, subject.unseen])
+    asked = bool(((responses >= 0) & (responses <= 1)).all())
+    expect(asked, f"responses lie in 0..1, not {responses.min():g}..{responses.max():g}: clip what rounding adds")
+
+
+@_suite.add
+def _recognises_what_it_learned(subject: _Subject) -> None:
+    localizer, places = subject.learned()
+    for index, responses in enumerate(_answers(localizer, places)):
+        best = responses.argmax()
+        asked = responses[index] == responses[best]
+        expect(asked, f"no place responds more to a learned frame than its own; place {best} beat place {index}")
+
+
+@_suite.add
+def _responds_repeatably(subject: _Subject) -> None:
+    localizer, places = subject.learned()
+    same = np.array_equal(_answers(localizer, places), _answers(localizer, places[::-1])[::-1])
+    expect(same, "the same observation gives the same responses, whatever was asked between")
+
+
+@_suite.add
+def _respond_learns_nothing(subject: _Subject) -> None:
+    localizer, places = subject.learned()
+    before = localizer.respond(places[0])
+    localizer.respond(subject.unseen)
+    expect(np.array_equal(localizer.respond(places[0]), before), "respond learns nothing, not even from a new view")
+
+
+@_suite.add
+def _respond_needs_no_gps(subject: _Subject) -> None:
+    localizer, places = subject.learned()
+    for place in places:
+        seeing = localizer.respond(place)
+        try:
+            blind = localizer.respond(_blind(place))
+        except Exception as error:
+            expect(False, f"respond does without gps, which is there only while learning; it raised {error!r}")
+        expect(np.array_equal(seeing, blind), "responses do not depend on gps, which is there only while learning")
+
+
+@_suite.add
+def _leaves_the_observation_alone(subject: _Subject) -> None:
+    localizer, seen = subject.cleared(), subject.drive
+    for observation in seen:
+        localizer.learn(observation)
+        localizer.respond(observation)
+    same = all(map(_same, seen, subject.drive))
+    expect(same, "learn and respond do not write into the observation")
+
+
+def _same(one: Mapping[str, Any], other: Mapping[str, Any]) -> bool:
+    return one.keys() == other.keys() and all(np.array_equal(one[key], other[key]) for key in one)
+
+
+@_suite.add
+def _places_have_their_own_memory(subject: _Subject) -> None:
+    localizer, places = subject.learned()
+    before = localizer.respond(subject.unseen)
+    for place in places:
+        for array in (place["frame"], place["heading"], place["camera"], place["gps"]):
+            array[:] = 1
+    same = np.array_equal(localizer.respond(subject.unseen), before)
+    expect(same, "places stay as they are when the arrays of an observation change later: copy what is kept")
+
+
+@_suite.add
+def _accepts_a_uniform_frame(subject: _Subject) -> None:
+    for grey in (0, 128, 255):
+        flat = Observation(**{**subject.unseen, "frame": flat_frame(grey)})
+        localizer, places = subject.learned()
+        try:
+            localizer.respond(flat)
+            localizer.learn(flat)
+            responses = localizer.respond(places[0])
+        except Exception as error:
+            expect(False, f"a frame of one grey is learned and answered like any other; it raised {error!r}")
+        expect(bool(np.isfinite(responses).all()), "responses are finite also where a place is a frame of one grey")
+
+
+@_suite.add
+def _clear_forgets(subject: _Subject) -> None:
+    localizer, _ = subject.learned()
+    before = _answers(localizer, subject.drive)
+    again, _ = subject.learned()
+    same = np.array_equal(_answers(again, subject.drive), before)
+    expect(same, "after clear nothing is left: the same drive gives the same places and responses")
+
+
+@_suite.add
+def _respond_agrees_with_compare(subject: _Subject) -> None:
+    localizer, places = subject.learned()
+    if not isinstance(localizer, DescriptorLocalizer):
+        return
+    streamed = _answers(localizer, places)
+    described = [localizer.describe(_blind(place)) for place in places]
+    asked = "compare gives exactly what respond gives"
+    expect(np.array_equal(localizer.compare(described, described), streamed), f"{asked}, for all frames at once")
+    pairs = [[localizer.compare([query], [place])[0, 0] for place in described] for query in described]
+    expect(np.array_equal(np.array(pairs, np.float32), streamed), f"{asked}, also pair by pair")
+
+
+@_suite.add
+def _learn_agrees_with_compare(subject: _Subject) -> None:
+    localizer, places = subject.learned()
+    if not isinstance(localizer, DescriptorLocalizer) or localizer.recruiting != "vigilance":
+        return
+    described = [localizer.describe(_blind(place)) for place in places]
+    matrix = localizer.compare(described, described)
+    for vigilance in np.unique(matrix):
+        recruits: list[int] = []
+        for frame in range(len(places)):
+            if not recruits or matrix[frame, recruits].max() < vigilance:
+                recruits.append(frame)
+        localizer.clear(float(vigilance))
+        learned = [frame for frame, place in enumerate(places) if localizer.learn(place) is not None]
+        asked = "learn recruits exactly where the best response that compare gives is below the vigilance"
+        expect(learned == recruits, f"{asked}: at {vigilance:g} frames {recruits}, not {learned}")
