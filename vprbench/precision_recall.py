@@ -116,8 +116,7 @@ def extended_precision(counts: Tally) -> Score:
     """
     surest = (counts.passed > 0).argmax(axis=1)[:, None]
     opening = np.take_along_axis(_precision(counts), surest, axis=1)[:, 0]
-    mean: Score = (opening + recall_at_100_precision(counts)) / 2
-    return mean
+    return (opening + recall_at_100_precision(counts)) / 2
 
 
 def roc_auc(counts: Tally) -> Score:
@@ -167,8 +166,7 @@ def _recall(counts: Tally) -> Float64[np.ndarray, "samples thresholds"]:
 
 def _faultless(counts: Tally) -> Int64[np.ndarray, " samples"]:
     """How many right hypotheses pass the lowest threshold that no wrong one passes."""
-    right: Int64[np.ndarray, " samples"] = np.where(counts.right == counts.passed, counts.right, 0).max(axis=1)
-    return right
+    return np.where(counts.right == counts.passed, counts.right, 0).max(axis=1)
 
 
 def _area(
@@ -177,5 +175,4 @@ def _area(
     """Trapezoidal area from (0, opening) on."""
     x = np.pad(x, ((0, 0), (1, 0)))
     y = np.pad(y, ((0, 0), (1, 0)), constant_values=opening)
-    area: Score = np.trapezoid(y, x, axis=1)
-    return area
+    return np.trapezoid(y, x, axis=1)

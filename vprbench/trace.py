@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, fields
+from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
@@ -139,11 +139,11 @@ class Trace:
                 raise DataError(f"{table.num_rows} of {rows} rows")
             return cls.from_frame(table.to_pandas())
         except (OSError, ValueError, pa.ArrowException, DataError) as error:
-            reason = str(error).splitlines()[0]
+            reason = str(error).split("\n")[0]
             raise DataError(f"{path}: not a readable trace ({reason}); run the cell again") from error
 
     def _columns(self) -> dict[str, np.ndarray]:
-        return {field.name: getattr(self, field.name) for field in fields(self)}
+        return {name: getattr(self, name) for name in DTYPES}
 
     def _typed(self, name: str) -> np.ndarray:
         """One column as an array of its own type and of the common length."""

@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-from types import SimpleNamespace
-from typing import Any, cast
+from typing import Any
+from unittest.mock import create_autospec
 
 import numpy as np
 import pytest
@@ -44,7 +44,9 @@ def drive() -> Trace:
 
 def drawing(starts: list[list[int]]) -> np.random.Generator:
     """A generator that draws these block starts."""
-    return cast(np.random.Generator, SimpleNamespace(integers=lambda _, size: np.array(starts).reshape(size)))
+    generator: np.random.Generator = create_autospec(np.random.Generator, instance=True)
+    generator.integers.side_effect = lambda _, size: np.array(starts).reshape(size)  # type: ignore[attr-defined]
+    return generator
 
 
 def test_blocks_close_the_circle_and_the_last_is_cut() -> None:

@@ -212,15 +212,15 @@ NAMES = pd.DataFrame(
 
 def test_markdown() -> None:
     assert to_markdown(make_table(NAMES)) == (
-        "**PR-AUC, recall over the right top-1s (place-field rule), %**\n"
+        "**PR-AUC, recall over the correct top-1s (place-field rule), in %, by sampling distance**\n"
         "\n"
-        "| agent / sampling\\_distance\\_m | 2 m | 5 m | mean |\n"
+        "| agent | 2 m | 5 m | mean |\n"
         "| --- | ---: | ---: | ---: |\n"
         "| \\[a\\_1\\|\\*x\\*\\] | **80.0** (70.0 to 90.0) | 60.0 (50.0 to 70.0) | 70.0 ± 14.1 |\n"
         "| 50% & \\\\# | 70.0 (60.0 to 80.0) | -† | 70.0† |\n"
         "\n"
         "4 cells, 1 failed: R1/5m/50% & \\\\#/s0; "
-        "± standard deviation over configurations (of one: over seeds; of the mean: over its entries); "
+        "± standard deviation over routes and distances (of one: over seeds; of the mean: over its entries); "
         "(low to high) block-bootstrap interval of a single cell; bold: best agent; "
         "† some of its cells failed, were not run or have no value: not comparable.\n"
     )
@@ -228,11 +228,13 @@ def test_markdown() -> None:
 
 def test_latex() -> None:
     lines = to_latex(make_table(NAMES)).splitlines()
-    assert lines[2].startswith(r"\caption{PR-AUC, recall over the right top-1s (place-field rule), \%. 4 cells,")
+    assert lines[2].startswith(
+        r"\caption{PR-AUC, recall over the correct top-1s (place-field rule), in \%, by sampling distance. 4 cells,"
+    )
     assert lines[3:] == [
         r"\begin{tabular}{lrrr}",
         r"\toprule",
-        r"agent / sampling\_distance\_m & 2 m & 5 m & mean \\",
+        r"agent & 2 m & 5 m & mean \\",
         r"\midrule",
         r"{[}a\_1\textbar{}*x*] & \textbf{80.0} (70.0 to 90.0) & 60.0 (50.0 to 70.0) & 70.0 $\pm$ 14.1 \\",
         r"50\% \& \textbackslash{}\# & 70.0 (60.0 to 80.0) & -$^\dagger$ & 70.0$^\dagger$ \\",
@@ -254,16 +256,16 @@ def test_terminal() -> None:
     console = Console(width=120, file=io.StringIO(), force_terminal=False)
     console.print(to_terminal(make_table(NAMES)))
     shown = console.file.getvalue()  # type: ignore[attr-defined]
-    for text in ("[a_1|*x*]", "80.0 (70.0 to 90.0)", "-†", "70.0 ± 14.1", "4 cells, 1 failed: R1/5m/50% & \\#/s0"):
+    for text in ("[a_1|*x*]", "80.0", "(70.0 to 90.0)", "-†", "70.0 ± 14.1", "4 cells, 1 failed: R1/5m/50% & \\#/s0"):
         assert text in shown
 
 
 def test_titles_name_metric_rule_and_unit() -> None:
     results = ONE_ROUTE.assign(auc_all_metric=0.5, error_median_m=1.234, vigilance=0.8765)
     titles = {
-        "auc_all_metric": "**PR-AUC, recall over all queries (metric rule), %**",
-        "error_median_m": "**median error, m**",
-        "vigilance": "**vigilance**",
+        "auc_all_metric": "**PR-AUC, recall over all queries (metric rule), in %, by sampling distance**",
+        "error_median_m": "**median error, in m, by sampling distance**",
+        "vigilance": "**vigilance, by sampling distance**",
     }
     for metric, title in titles.items():
         assert to_markdown(make_table(results, metric=metric)).startswith(title + "\n")

@@ -15,10 +15,10 @@ from vprbench.tables.model import Entry, Table, unit
 __all__ = ["notes", "title", "to_csv", "to_latex", "to_markdown", "to_terminal"]
 
 LABELS = {
-    "auc": "PR-AUC, recall over the right top-1s",
+    "auc": "PR-AUC, recall over the correct top-1s",
     "auc_all": "PR-AUC, recall over all queries",
     "accuracy": "top-1 accuracy",
-    "recall_at_100_precision": "recall at 100 % precision, over the right top-1s",
+    "recall_at_100_precision": "recall at 100 % precision, over the correct top-1s",
     "recall_at_100_precision_all": "recall at 100 % precision, over all queries",
     "extended_precision": "extended precision",
     "roc_auc": "ROC-AUC of the confidence",
@@ -51,12 +51,12 @@ LATEX = str.maketrans(
 
 
 def title(table: Table) -> str:
-    """What the table shows, by which rule, in which unit."""
+    """What the table shows, by which rule, in which unit, along which axis."""
     rule = "metric rule" if table.metric.endswith("_metric") else "place-field rule"
     label = LABELS.get(table.metric.removesuffix("_metric"))
     named = f"{label} ({rule})" if label else FREE_OF_RULES.get(table.metric, table.metric)
     symbol = unit(table.metric).symbol
-    return f"{named}, {symbol}" if symbol else named
+    return f"{named}{f', in {symbol}' if symbol else ''}, by {_named(table.axes[1])}"
 
 
 def notes(table: Table) -> list[str]:
@@ -65,7 +65,9 @@ def notes(table: Table) -> list[str]:
     listed = ", ".join(table.failed[:LISTED]) + (", ..." if len(table.failed) > LISTED else "")
     said = [f"{table.cells} cells, {len(table.failed)} failed" + (f": {listed}" if listed else "")]
     if any(not isnan(entry.sd) for entry in entries):
-        said.append("± standard deviation over configurations (of one: over seeds; of the mean: over its entries)")
+        said.append(
+            "± standard deviation over routes and distances (of one: over seeds; of the mean: over its entries)"
+        )
     if any(not isnan(entry.low) for entry in entries):
         said.append("(low to high) block-bootstrap interval of a single cell")
     if any(entry.best for entry in entries):
@@ -78,7 +80,7 @@ def notes(table: Table) -> list[str]:
 def to_terminal(table: Table) -> RichTable:
     """The table for a terminal, to be printed by rich."""
     drawn = RichTable(title=Text(title(table)), caption=Text("\n".join(notes(table))), caption_justify="left")
-    drawn.add_column(Text(_corner(table)))
+    drawn.add_column(Text(_named(table.axes[0])))
     for column in table.columns:
         drawn.add_column(Text(column), justify="right")
     for head, line in zip(table.rows, table.entries, strict=True):
@@ -123,8 +125,8 @@ def to_csv(table: Table) -> str:
     return pd.DataFrame(tidy).to_csv(index=False, lineterminator="\n")
 
 
-def _corner(table: Table) -> str:
-    return " / ".join(table.axes)
+def _named(axis: str) -> str:
+    return axis.removesuffix("_m").replace("_", " ")
 
 
 def _sentence(table: Table) -> str:
@@ -135,31 +137,33 @@ def _grid(table: Table, escapes: dict[int, str], bold: str) -> list[list[str]]:
     """Every text of the table, heads included, escaped for a format; the best figures in its bold."""
 
     def written(entry: Entry) -> str:
-        figure, rest = _figures(entry, table.metric)
-        return (bold.format(figure) if entry.best else figure.translate(escapes)) + rest.translate(escapes)
+        figure, spread, interval = _figures(entry, table.metric)
+        rest = f"{spread} {interval}".rstrip().translate(escapes)
+        return (bold.format(figure) if entry.best else figure) + rest
 
     lines = zip(table.rows, table.entries, strict=True)
     return [
-        [text.translate(escapes) for text in (_corner(table), *table.columns)],
+        [text.translate(escapes) for text in (_named(table.axes[0]), *table.columns)],
         *([head.translate(escapes), *map(written, line)] for head, line in lines),
     ]
 
 
 def _styled(entry: Entry, metric: str) -> Text:
-    figure, rest = _figures(entry, metric)
-    return Text.assemble((figure, "bold" if entry.best else ""), rest)
+    """An entry for the terminal, its interval on a line of its own."""
+    figure, spread, interval = _figures(entry, metric)
+    return Text.assemble((figure, "bold" if entry.best else ""), spread, (f"\n{interval}".rstrip(), "dim"))
 
 
-def _figures(entry: Entry, metric: str) -> tuple[str, str]:
-    """The figure itself, and what follows it."""
+def _figures(entry: Entry, metric: str) -> tuple[str, str, str]:
+    """The figure itself, its mark and spread, and its interval."""
     factor, decimals, _ = unit(metric)
     mark = PARTIAL if entry.partial else ""
     if not entry.cells:
-        return "-", mark
+        return "-", mark, ""
 
     def shown(figure: float) -> str:
         return f"{figure * factor:.{decimals}f}"
 
     spread = "" if isnan(entry.sd) else f" ± {shown(entry.sd)}"
-    interval = "" if isnan(entry.low) else f" ({shown(entry.low)} to {shown(entry.high)})"
-    return shown(entry.mean), mark + spread + interval
+    interval = "" if isnan(entry.low) else f"({shown(entry.low)} to {shown(entry.high)})"
+    return shown(entry.mean), mark + spread, interval

@@ -116,7 +116,7 @@ def _tidy(results: pd.DataFrame, rows: str, columns: str, metric: str) -> pd.Dat
 def _keys(axis: pd.Series) -> list[str] | list[float]:
     """What stands along an axis: numbers in order, names as they first come."""
     keys = axis.unique().tolist()
-    return sorted(keys) if pd.api.types.is_numeric_dtype(axis) else keys
+    return sorted(map(float, keys)) if pd.api.types.is_numeric_dtype(axis) else keys
 
 
 def _head(axis: str, key: str | float) -> str:
