@@ -45,8 +45,10 @@ def estimate(job: Job, settings: Settings) -> Estimate:
     localizer = build(job.config, job.seed)
     training = sum(len(drive) for drive in route.training)
     started = perf_counter()
-    localizer.fit([Drive(drive)[:SAMPLE] for drive in route.training])
-    fitting = (perf_counter() - started) * training / max(1, SAMPLE * len(route.training))
+    # Evenly spread frames, since a calibration may want places that lie apart.
+    samples = [Drive(drive)[:: max(1, len(drive) // SAMPLE)] for drive in route.training]
+    localizer.fit(samples)
+    fitting = (perf_counter() - started) * training / max(1, sum(map(len, samples)))
     frames, pairs = len(route.learn) + len(route.test), _pairs(job, route, localizer)
     describing, comparing = _costs(route, localizer)
     return Estimate(frames + training, pairs, fitting + frames * describing + pairs * comparing)

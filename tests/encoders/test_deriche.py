@@ -4,6 +4,7 @@ import numpy as np
 import pytest
 from jaxtyping import Float64
 from scipy.ndimage import convolve1d
+
 from vprbench_encoders.deriche import gradient, gradient_magnitude
 
 ALPHAS = pytest.mark.parametrize("alpha", [0.5, 1.0, 2.0])

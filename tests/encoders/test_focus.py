@@ -5,10 +5,10 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 from scipy.ndimage import gaussian_filter, maximum_filter
-from vprbench_encoders.focus import FocusDetector
 
 from vprbench.errors import ConfigError, DataError
 from vprbench.types import Frame
+from vprbench_encoders.focus import FocusDetector
 
 
 def blobs(*spots: tuple[int, int, int]) -> Frame:

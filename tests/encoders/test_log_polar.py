@@ -8,12 +8,12 @@ from hypothesis import strategies as st
 from jaxtyping import Float32
 from scipy.ndimage import map_coordinates
 from scipy.spatial.distance import cdist
-from vprbench_encoders.log_polar import LogPolar, area_average, log_polar_grid, sample_log_polar
 
 from vprbench.agents import build_encoder
 from vprbench.errors import ConfigError
 from vprbench.protocols import Encoder
 from vprbench.types import Frame
+from vprbench_encoders.log_polar import LogPolar, area_average, log_polar_grid, sample_log_polar
 
 GRID = log_polar_grid(2.0, 27.0)
 SIZES = pytest.mark.parametrize("size", [6, 9, 12, 15, 27])

@@ -10,16 +10,16 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 from jaxtyping import Float32, Int64
-from vprbench_encoders.log_polar import LogPolar
-from vprbench_localizers.matching import PairEncoder
-from vprbench_localizers.max_pi import MaxPi
-from vprbench_localizers.unit_memory import View
 
 from vprbench.agents import build
 from vprbench.errors import ConfigError, PluginError
 from vprbench.protocols import DescriptorLocalizer
 from vprbench.recruiting import recruit_by_vigilance
 from vprbench.types import Frame, Landmarks, Observation
+from vprbench_encoders.log_polar import LogPolar
+from vprbench_localizers.matching import PairEncoder
+from vprbench_localizers.max_pi import MaxPi
+from vprbench_localizers.unit_memory import View
 
 Matrix = Float32[np.ndarray, "rows columns"]
 

@@ -5,11 +5,11 @@ from collections.abc import Sequence
 import numpy as np
 import pytest
 from jaxtyping import Float32
-from vprbench_localizers.calibration import Calibration
-from vprbench_localizers.max_pi import MaxPi
 
 from vprbench.errors import DataError
 from vprbench.types import Frame, Landmarks, Observation
+from vprbench_localizers.calibration import Calibration
+from vprbench_localizers.max_pi import MaxPi
 
 Matrix = Float32[np.ndarray, "rows columns"]
 

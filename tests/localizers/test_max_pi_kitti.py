@@ -4,11 +4,11 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from vprbench_encoders.log_polar import LogPolar
-from vprbench_localizers.max_pi import MaxPi
 
 from vprbench.catalogue import load_route
 from vprbench.observation import Drive
+from vprbench_encoders.log_polar import LogPolar
+from vprbench_localizers.max_pi import MaxPi
 
 
 @pytest.mark.kitti
