@@ -20,7 +20,7 @@ class Need:
         source: the recording in words, for example "KITTI odometry sequence 00".
         folder: where its frames are looked for.
         frames: the frame numbers needed.
-        missing: those of them without a file.
+        missing: those of them that lack a file.
         absent: other files that are not there (poses, times, calibration).
         remedy: how to get them.
     """
@@ -39,6 +39,8 @@ class Need:
 
     def __str__(self) -> str:
         """What is needed, what is there and what is not, in one line."""
+        if not self.frames:
+            return f"{self.source}, a file that is not there"
         there = len(self.frames) - len(self.missing)
         text = f"frames {format_ranges(self.frames)} of {self.source}: "
         text += f"{there} of {len(self.frames)} are in {self.folder}"
@@ -87,18 +89,20 @@ class Availability:
             )
 
 
-def need_of(source: str, folder: Path, frames: Mapping[int, Path], others: Iterable[Path], remedy: str) -> Need:
+def need_of(
+    source: str, folder: Path, frames: Mapping[int, tuple[Path, ...]], others: Iterable[Path], remedy: str
+) -> Need:
     """A recording's need, checked against its folders' listings (no file is opened).
 
     Args:
         source: the recording in words.
         folder: where its frames are looked for, for the message.
-        frames: the file of each frame number needed.
+        frames: the files of each frame number needed.
         others: the other files needed.
         remedy: how to get them, a sentence.
     """
-    listings = {parent: _names(parent) for parent in {path.parent for path in frames.values()}}
-    missing = tuple(sorted(i for i, path in frames.items() if path.name not in listings[path.parent]))
+    listings = {parent: _names(parent) for parent in {path.parent for paths in frames.values() for path in paths}}
+    missing = tuple(sorted(i for i, paths in frames.items() if any(p.name not in listings[p.parent] for p in paths)))
     absent = tuple(path for path in others if not path.is_file())
     return Need(source, folder, tuple(sorted(frames)), missing, absent, remedy)
 

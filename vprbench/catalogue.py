@@ -2,24 +2,24 @@
 
 from __future__ import annotations
 
-import re
-import tomllib
 from collections.abc import Mapping
 from dataclasses import dataclass
 from functools import cache
 from importlib import resources
 from pathlib import Path
-from typing import Any
-
-from pydantic import TypeAdapter, ValidationError
 
 from vprbench.availability import Availability
 from vprbench.data_root import data_root
 from vprbench.entries import RouteEntry, Split
-from vprbench.errors import ConfigError, nearest
+from vprbench.entries.files import read_entries
+from vprbench.errors import ConfigError, DataError, nearest
 from vprbench.route import Route
+from vprbench.truth import revisit
 
 __all__ = ["Catalogue", "catalogue", "load_route"]
+
+# Metres. Two lanes of a wide road lie nearer; the drives of two different roads, or of swapped coordinates, do not.
+_SAME_ROAD = 50.0
 
 
 @dataclass(frozen=True)
@@ -35,7 +35,7 @@ class Catalogue:
     def entry(self, name: str) -> RouteEntry:
         """What the catalogue says of a route; ConfigError, with the nearest name, where it has none."""
         if name not in self.entries:
-            raise ConfigError(f"no route {name!r} {nearest(name, self.entries)}")
+            raise ConfigError(f"no route {name!r}: {nearest(name, self.entries)}")
         return self.entries[name]
 
     def availability(self, name: str, data: Path | str | None = None) -> Availability:
@@ -46,7 +46,9 @@ class Catalogue:
         """The route, with lazy frames; DataError says which files are missing and how to get them."""
         entry, root = self.entry(name), data_root(data)
         Availability(name, entry.needs(root)).require()
-        return entry.load(name, root)
+        route = entry.load(name, root)
+        _check_same_road(route)
+        return route
 
 
 def catalogue(routes: Path | str | None = None) -> Catalogue:
@@ -54,7 +56,7 @@ def catalogue(routes: Path | str | None = None) -> Catalogue:
     built_in = _built_in()
     if routes is None:
         return built_in
-    own = _read(Path(routes))
+    own = read_entries(Path(routes))
     taken = sorted(set(own) & set(built_in.entries))
     if taken:
         raise ConfigError(f"{routes}: routes.{taken[0]}: the name of a built-in route; choose another")
@@ -75,31 +77,13 @@ def load_route(name: str, data: Path | str | None = None, routes: Path | str | N
 @cache
 def _built_in() -> Catalogue:
     with resources.as_file(resources.files("vprbench") / "data" / "routes.toml") as path:
-        return Catalogue(_read(path))
+        return Catalogue(read_entries(path))
 
 
-def _read(path: Path) -> dict[str, RouteEntry]:
-    try:
-        tables = tomllib.loads(path.read_text(encoding="utf-8"))
-    except (OSError, UnicodeDecodeError) as error:
-        raise ConfigError(f"{path}: cannot be read ({error})") from error
-    except tomllib.TOMLDecodeError as error:
-        raise ConfigError(f"{path}: not TOML: {error}") from error
-    unknown = sorted(set(tables) - {"routes"})
-    if unknown:
-        raise ConfigError(f"{path}: {unknown[0]}: unknown key; {nearest(unknown[0], ['routes'])}")
-    return {name: _entry(path, name, table) for name, table in tables.get("routes", {}).items()}
-
-
-def _entry(path: Path, name: str, table: Any) -> RouteEntry:  # noqa: ANN401 - whatever the file holds
-    key = f"{path}: routes.{name}"
-    if not re.fullmatch(r"\w[\w.-]*", name, re.ASCII):
-        raise ConfigError(f"{key}: a route's name has letters, digits, '_', '-' and '.' only")
-    try:
-        return TypeAdapter(RouteEntry).validate_python(table, context={"folder": path.parent})
-    except ValidationError as error:
-        raise ConfigError(f"{key}{_fault(error)}") from error
-
-
-def _fault(error: ValidationError) -> str:
-    return str(error)
+def _check_same_road(route: Route) -> None:
+    closest = revisit(route.learn.positions, route.test.positions).tolerance.min()
+    if closest > _SAME_ROAD:
+        raise DataError(
+            f"{route.name}: {route.test.name} never comes nearer than {closest:.0f} m to {route.learn.name}; "
+            "check their positions, or choose two drives along one road"
+        )

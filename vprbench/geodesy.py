@@ -2,11 +2,15 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
+
 import numpy as np
 import pymap3d
 from jaxtyping import Float64
 
-__all__ = ["compass_heading", "course", "local_positions", "wrap"]
+from vprbench.errors import DataError
+
+__all__ = ["check_geodetic", "compass_heading", "course", "local_positions", "wrap"]
 
 
 def wrap(angles: Float64[np.ndarray, "*shape"]) -> Float64[np.ndarray, "*shape"]:
@@ -33,6 +37,16 @@ def local_positions(
     return np.stack([east, north], axis=1)
 
 
+def check_geodetic(geodetic: Float64[np.ndarray, "n 2"], where: Callable[[int], str]) -> None:
+    """Refuse latitudes and longitudes that are none; `where` names the file and line of row i."""
+    limits = np.array([90.0, 180.0])
+    bad = np.argwhere(~(np.abs(geodetic) <= limits))
+    if bad.size:
+        row, column = bad[0]
+        name = ("latitude", "longitude")[column]
+        raise DataError(f"{where(int(row))}: {name} {geodetic[row, column]:g} is not within {limits[column]:g} degrees")
+
+
 def course(positions: Float64[np.ndarray, "n 2"], window: float = 5.0) -> Float64[np.ndarray, " n"]:
     """Heading of the road at each position, radians clockwise from north, seen from the positions alone.
 
@@ -41,7 +55,7 @@ def course(positions: Float64[np.ndarray, "n 2"], window: float = 5.0) -> Float6
 
     Args:
         positions: (n, 2) east and north, metres.
-        window: metres of road between the two ends (our choice: one car length).
+        window: metres of road between the two ends (our choice: about one car length).
     """
     steps = np.linalg.norm(np.diff(positions, axis=0), axis=1)
     distance = np.concatenate([[0.0], np.cumsum(steps)])

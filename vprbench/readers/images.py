@@ -9,7 +9,7 @@ from pathlib import Path
 
 import cv2
 import numpy as np
-from jaxtyping import UInt8
+from jaxtyping import Float64, UInt8
 
 from vprbench.errors import DataError
 from vprbench.route import Camera
@@ -66,18 +66,21 @@ def image_size(path: Path) -> tuple[int, int]:
     return width, height
 
 
-def scaled_camera(fx: float, cx: float, width: int) -> Camera:
-    """The camera of the reduced frames, given its focal length and principal column at full width, pixels."""
+def scaled_camera(fx: float, cx: float, width: int, image: str) -> Camera:
+    """The camera of the reduced frames, given its focal length and principal column at full width, pixels.
+
+    DataError, naming `image`, where the principal column lies outside: they belong to another image size.
+    """
+    if not 0 < cx < width:
+        raise DataError(f"{image}: {width} pixels wide, but cx is {cx:g}: not the calibration of these images")
     scale = FRAME_WIDTH / width
     return Camera(float(fx * scale), float(cx * scale))
 
 
-def content_hash(paths: tuple[Path, ...], *motion: bytes) -> str:
-    """Sha256 of a drive: the bytes of its frame files in order, then of its motion and camera."""
+def content_hash(paths: tuple[Path, ...], *arrays: Float64[np.ndarray, "..."]) -> str:
+    """Sha256 of a drive: the bytes of its frame files in order, then its motion and camera."""
     digest = hashlib.sha256()
-    for path in paths:
-        digest.update(hashlib.sha256(_bytes(path)).digest())
-    for part in motion:
+    for part in (*map(_bytes, paths), *(array.tobytes() for array in arrays)):
         digest.update(hashlib.sha256(part).digest())
     return digest.hexdigest()
 

@@ -68,7 +68,7 @@ class OdometrySequence:
 
     def need(self, frames: Iterable[int]) -> Need:
         """These frames and the sequence's pose, time and calibration files."""
-        files = {i: self._file(i) for i in frames}
+        files = {i: (self._file(i),) for i in frames}
         others = [self.poses, self.folder / "times.txt", self.folder / "calib.txt"]
         remedy = _REMEDY.format(images=_IMAGES[self.camera])
         return need_of(f"KITTI odometry sequence {self.name}", self.folder / self.camera, files, others, remedy)
@@ -93,9 +93,9 @@ class OdometrySequence:
             positions=positions,
             headings=headings,
             times=times,
-            camera=scaled_camera(projection[0, 0], projection[0, 2], size[0]),
+            camera=scaled_camera(projection[0, 0], projection[0, 2], size[0], str(paths[0])),
             indices=np.arange(run.first, run.last + 1),
-            checksum=content_hash(paths, *(v.tobytes() for v in (positions, headings, times, projection))),
+            checksum=content_hash(paths, positions, headings, times, projection),
         )
 
     def _file(self, frame: int) -> Path:
@@ -112,7 +112,7 @@ def read_motion(poses: Path, times: Path) -> Motion:
     seconds = read_numbers(times, 1)[:, 0]
     if len(seconds) != len(matrices):
         raise DataError(f"{times}: {len(seconds)} times for the {len(matrices)} poses in {poses}")
-    check_increasing(seconds, times)
+    check_increasing(seconds, lambda row: f"{times}, line {row + 1}")
     headings = np.arctan2(matrices[:, 0, 2], matrices[:, 2, 2])
     return Motion(matrices[:, [0, 2], 3], headings, seconds)
 

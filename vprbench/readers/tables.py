@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from pathlib import Path
 
 import numpy as np
@@ -39,12 +40,11 @@ def read_numbers(path: Path, columns: int) -> Float64[np.ndarray, "lines columns
     return values
 
 
-def check_increasing(times: Float64[np.ndarray, " n"], path: Path, first_line: int = 1) -> None:
-    """Refuse times (one a line of `path`) that stand still or run backwards."""
+def check_increasing(times: Float64[np.ndarray, " n"], where: Callable[[int], str]) -> None:
+    """Refuse times that stand still or run backwards; `where` names the file and line of row i."""
     bad = np.flatnonzero(np.diff(times) <= 0)
     if bad.size:
-        line = first_line + bad[0] + 1
-        raise DataError(f"{path}, line {line}: the time is not after the one before")
+        raise DataError(f"{where(int(bad[0]) + 1)}: the time is not after the one before")
 
 
 def _number(word: str) -> float:

@@ -1,0 +1,25 @@
+"""Catalogue entries: what a route is made of, as data, one kind for each reader."""
+
+from __future__ import annotations
+
+from typing import Annotated
+
+from pydantic import Field
+
+from vprbench.entries.base import Entry, Split
+from vprbench.entries.folder import FolderEntry, OwnCamera
+from vprbench.entries.kitti import KittiOdometryEntry, KittiRawEntry
+from vprbench.entries.street import StreetEntry
+
+__all__ = [
+    "Entry",
+    "FolderEntry",
+    "KittiOdometryEntry",
+    "KittiRawEntry",
+    "OwnCamera",
+    "RouteEntry",
+    "Split",
+    "StreetEntry",
+]
+
+RouteEntry = Annotated[KittiOdometryEntry | KittiRawEntry | FolderEntry | StreetEntry, Field(discriminator="reader")]

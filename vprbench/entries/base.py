@@ -1,0 +1,83 @@
+"""What every catalogue entry states, and the entries made of runs of numbered frames."""
+
+from __future__ import annotations
+
+from abc import ABC, abstractmethod
+from collections import defaultdict
+from collections.abc import Mapping
+from itertools import combinations
+from pathlib import Path
+from typing import Annotated, Literal
+
+from pydantic import BaseModel, BeforeValidator, ConfigDict, model_validator
+
+from vprbench.availability import Need
+from vprbench.frame_ranges import FrameRun
+from vprbench.route import Route
+
+__all__ = ["Entry", "Run", "RunsEntry", "Split"]
+
+Split = Literal["report", "tuning", "control"]
+
+
+def _run(value: object) -> object:
+    return FrameRun.parse(value) if isinstance(value, str) else value
+
+
+Run = Annotated[FrameRun, BeforeValidator(_run)]
+
+
+class Entry(BaseModel, ABC):
+    """What every entry states about its route.
+
+    Attributes:
+        environment: the kind of road.
+        split: "report" for results, "tuning" for choosing parameters, "control" for one question.
+    """
+
+    model_config = ConfigDict(extra="forbid", frozen=True, allow_inf_nan=False)
+
+    environment: str = ""
+    split: Split = "report"
+
+    @abstractmethod
+    def needs(self, root: Path) -> tuple[Need, ...]:
+        """What must be on disk, under the data root or elsewhere."""
+
+    @abstractmethod
+    def load(self, name: str, root: Path) -> Route:
+        """The route; its frames stay on disk until they are asked for."""
+
+
+class RunsEntry(Entry):
+    """A route whose drives are runs of frames of numbered recordings.
+
+    Attributes:
+        learn: the frames of the learn drive.
+        test: those of the test drive.
+        training: those of drives off the route.
+    """
+
+    learn: Run
+    test: Run
+    training: tuple[Run, ...] = ()
+
+    @property
+    def runs(self) -> tuple[FrameRun, ...]:
+        """The runs of the learn drive, the test drive and the training drives."""
+        return (self.learn, self.test, *self.training)
+
+    def frames(self) -> Mapping[str, list[int]]:
+        """The frames needed of each recording."""
+        needed: dict[str, list[int]] = defaultdict(list)
+        for run in self.runs:
+            needed[run.sequence].extend(run.frames)
+        return needed
+
+    @model_validator(mode="after")
+    def _disjoint(self) -> RunsEntry:
+        """A frame that is both learned and tested would be recognised for nothing."""
+        for a, b in combinations(self.runs, 2):
+            if a.sequence == b.sequence and a.first <= b.last and b.first <= a.last:
+                raise ValueError(f'"{a}" and "{b}" share frames')
+        return self

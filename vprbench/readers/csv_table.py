@@ -1,0 +1,83 @@
+"""A CSV file read strictly: known columns, complete lines, finite numbers, and every fault by its line."""
+
+from __future__ import annotations
+
+import csv
+from collections.abc import Collection, Mapping
+from dataclasses import dataclass
+from pathlib import Path
+
+import numpy as np
+from jaxtyping import Float64
+
+from vprbench.errors import DataError, nearest
+from vprbench.readers.tables import read_text
+
+__all__ = ["CsvTable", "read_csv"]
+
+
+@dataclass(frozen=True)
+class CsvTable:
+    """The words of a CSV file.
+
+    Attributes:
+        path: the file.
+        columns: the words of each column, by its name.
+        lines: the line of each row in the file, from 1.
+    """
+
+    path: Path
+    columns: Mapping[str, tuple[str, ...]]
+    lines: tuple[int, ...]
+
+    def where(self, row: int) -> str:
+        """The file and line of a row, for messages."""
+        return f"{self.path}, line {self.lines[row]}"
+
+    def numbers(self, name: str) -> Float64[np.ndarray, " rows"]:
+        """A column as finite numbers; DataError names the first that is none."""
+        return np.array([self._number(name, row) for row in range(len(self.lines))])
+
+    def _number(self, name: str, row: int) -> float:
+        word = self.columns[name][row]
+        try:
+            value = float(word)
+        except ValueError:
+            value = np.nan
+        if not np.isfinite(value):
+            hint = "; write decimals with a point" if "," in word else ""
+            raise DataError(f"{self.where(row)}: {name} is {word!r}, not a finite number{hint}")
+        return value
+
+
+def read_csv(path: Path, known: Collection[str]) -> CsvTable:
+    """Read a CSV file whose header names known columns only; blank lines are passed over.
+
+    Raises:
+        DataError: a file that cannot be read, an unknown or repeated column, or a line with more or fewer words.
+    """
+    reader = csv.reader(read_text(path).splitlines(keepends=True), strict=True)
+    try:
+        rows = [(reader.line_num, [word.strip() for word in words]) for words in reader if words]
+    except csv.Error as error:
+        raise DataError(f"{path}, line {reader.line_num}: {error}") from error
+    if not rows:
+        raise DataError(f"{path}: the file is empty")
+    (_, header), *body = rows
+    _check_header(path, header, known)
+    for line, words in body:
+        if len(words) != len(header):
+            hint = "; write decimals with a point" if len(words) > len(header) else ""
+            raise DataError(f"{path}, line {line}: {len(words)} values for {len(header)} columns{hint}")
+    columns = {name: tuple(words[i] for _, words in body) for i, name in enumerate(header)}
+    return CsvTable(path, columns, tuple(line for line, _ in body))
+
+
+def _check_header(path: Path, header: list[str], known: Collection[str]) -> None:
+    unknown = [name for name in header if name not in known]
+    if unknown and ";" in unknown[0]:
+        raise DataError(f"{path}, line 1: separated by semicolons; separate the columns by commas")
+    if unknown:
+        raise DataError(f"{path}, line 1: unknown column {unknown[0]!r}: {nearest(unknown[0], known)}")
+    if len(set(header)) < len(header):
+        raise DataError(f"{path}, line 1: a column is named twice")

@@ -1,0 +1,153 @@
+"""Anyone's own drives: images, and a CSV that says where and when each was taken.
+
+The CSV is encoded in UTF-8 and has a header. Its columns, in any order:
+
+- file: the image (PNG or JPEG), relative to the CSV
+- time: seconds, increasing
+- east, north: metres, of one origin for all drives of a route; or latitude, longitude: degrees (WGS 84)
+- heading_deg: degrees clockwise from north; without it the heading is the direction of the positions
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from functools import cached_property
+from pathlib import Path
+
+import numpy as np
+from jaxtyping import Float64
+
+from vprbench.availability import Need, need_of
+from vprbench.errors import DataError
+from vprbench.geodesy import check_geodetic, course, local_positions, wrap
+from vprbench.readers.csv_table import CsvTable, read_csv
+from vprbench.readers.images import ImageFiles, content_hash, image_size
+from vprbench.readers.tables import check_increasing
+from vprbench.route import Camera, Traverse
+
+__all__ = ["FolderDrive"]
+
+_LOCAL, _GEODETIC = ("east", "north"), ("latitude", "longitude")
+
+# Faster than any road vehicle: such a step is a lost fix (often 0, 0) or a wrong unit. Our choice.
+_FASTEST = 100.0
+
+# Metres of road that a direction is taken over. Our choice: about one car length.
+_COURSE_WINDOW = 5.0
+
+
+@dataclass(frozen=True)
+class FolderDrive:
+    """One drive of a user's own.
+
+    Attributes:
+        path: the CSV.
+    """
+
+    path: Path
+
+    @cached_property
+    def images(self) -> tuple[Path, ...]:
+        """The image file of each frame."""
+        names = self._table.columns["file"]
+        rows: dict[str, int] = {}
+        for row, name in enumerate(names):
+            if rows.setdefault(name, row) != row:
+                raise DataError(f"{self._table.where(row)}: the image of another line too, {name}")
+        return tuple(self.path.parent / name for name in names)
+
+    @cached_property
+    def geodetic(self) -> Float64[np.ndarray, "n 2"] | None:
+        """Latitude and longitude, degrees; None where the CSV has east and north."""
+        if _GEODETIC[0] not in self._table.columns:
+            return None
+        fixes = self._numbers(_GEODETIC)
+        check_geodetic(fixes, self._table.where)
+        return fixes
+
+    def need(self) -> Need:
+        """The CSV and the images it names, numbered from 0."""
+        remedy = f"Put each image where {self.path} says, relative to that file."
+        if not self.path.is_file():
+            return Need(str(self.path), self.path.parent, (), (), (self.path,), remedy)
+        files = {frame: (image,) for frame, image in enumerate(self.images)}
+        return need_of(str(self.path), self.path.parent, files, (), remedy)
+
+    def traverse(self, camera: Callable[[int], Camera], origin: Float64[np.ndarray, "2"] | None) -> Traverse:
+        """The drive.
+
+        Args:
+            camera: of the reduced frames, given the width of the images, pixels.
+            origin: latitude and longitude of the local plane's origin, where the CSV has these.
+        """
+        positions = self._positions(origin)
+        times, headings = self._times(positions), self._headings(positions)
+        size = image_size(self.images[0])
+        seen_by = camera(size[0])
+        parts = (positions, times, headings, np.array([seen_by.fx, seen_by.cx]))
+        return Traverse(
+            name=str(self.path) if self._has_heading else f"{self.path} (headings from its positions)",
+            frames=ImageFiles(self.images, size),
+            positions=positions,
+            headings=headings,
+            times=times,
+            camera=seen_by,
+            indices=np.arange(len(positions)),
+            checksum=content_hash(self.images, *parts),
+            geodetic=self.geodetic,
+        )
+
+    @cached_property
+    def _table(self) -> CsvTable:
+        table = read_csv(self.path, ["file", "time", *_LOCAL, *_GEODETIC, "heading_deg"])
+        names = table.columns.keys()
+        pairs = [pair for pair in (_LOCAL, _GEODETIC) if names & set(pair)]
+        due = ["file", "time", *(pairs[0] if pairs else _LOCAL)]
+        absent = [name for name in due if name not in names]
+        if absent or len(pairs) > 1:
+            fault = f"no column {absent[0]!r}" if absent else "positions of two kinds"
+            pair = "either east and north or latitude and longitude"
+            raise DataError(f"{self.path}, line 1: {fault}; the columns are file, time, {pair}, and heading_deg")
+        if len(table.lines) < 2:
+            raise DataError(f"{self.path}: {len(table.lines)} frames, and a drive has at least two")
+        return table
+
+    @property
+    def _has_heading(self) -> bool:
+        return "heading_deg" in self._table.columns
+
+    def _numbers(self, names: tuple[str, ...]) -> Float64[np.ndarray, "n columns"]:
+        return np.stack([self._table.numbers(name) for name in names], axis=1)
+
+    def _positions(self, origin: Float64[np.ndarray, "2"] | None) -> Float64[np.ndarray, "n 2"]:
+        if self.geodetic is not None and origin is not None:
+            return local_positions(self.geodetic, origin)
+        if self.geodetic is not origin:
+            fault = "latitude and longitude beside another drive's east and north, or the other way round"
+            raise DataError(f"{self.path}: {fault}; give all drives of a route the same")
+        return self._numbers(_LOCAL)
+
+    def _times(self, positions: Float64[np.ndarray, "n 2"]) -> Float64[np.ndarray, " n"]:
+        """Seconds; a step between frames that no road vehicle makes is refused."""
+        times = self._table.numbers("time")
+        check_increasing(times, self._table.where)
+        speeds = np.linalg.norm(np.diff(positions, axis=0), axis=1) / np.diff(times)
+        bad = np.flatnonzero(speeds > _FASTEST)
+        if bad.size:
+            where, speed = self._table.where(int(bad[0]) + 1), speeds[bad[0]]
+            raise DataError(f"{where}: {speed:.0f} m/s since the frame before; check the position and the time (s)")
+        return times
+
+    def _headings(self, positions: Float64[np.ndarray, "n 2"]) -> Float64[np.ndarray, " n"]:
+        """Radians in -pi..pi, clockwise from north."""
+        if not self._has_heading:
+            if np.linalg.norm(np.diff(positions, axis=0), axis=1).sum() < _COURSE_WINDOW:
+                raise DataError(f"{self.path}: too short a drive to see its direction; add a column heading_deg")
+            return course(positions, _COURSE_WINDOW)
+        degrees = self._table.numbers("heading_deg")
+        bad = np.flatnonzero(np.abs(degrees) > 360.0)
+        if bad.size:
+            where = self._table.where(int(bad[0]))
+            raise DataError(f"{where}: heading_deg {degrees[bad[0]]:g} is not within 360 degrees")
+        return wrap(np.radians(degrees))
