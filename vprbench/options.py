@@ -67,6 +67,8 @@ def _signature(factory: Factory) -> inspect.Signature:
         return inspect.signature(factory, eval_str=True)
     except (AttributeError, NameError):
         return inspect.signature(factory)
+    except ValueError:  # compiled, and so without one: it takes no options
+        return inspect.Signature()
 
 
 def _takes_any(factory: Factory) -> bool:

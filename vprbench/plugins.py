@@ -67,7 +67,7 @@ class Plugin:
         except (Exception, SystemExit) as error:
             raise PluginError(f"{self} does not load from {self.value}: {one_line(error)}") from error
         if not callable(factory):
-            raise PluginError(f"{self}: {self.value} is a {type(factory).__name__}, not a class or function")
+            raise PluginError(f"{self}: {self.value} is of type {type(factory).__name__}, not a class or function")
         return factory
 
     def fault(self) -> str | None:

@@ -6,6 +6,7 @@ import json
 import math
 import re
 from datetime import date
+from importlib.metadata import version
 from pathlib import Path
 from typing import Any
 
@@ -144,6 +145,25 @@ def test_validate_finds_a_fault_without_building() -> None:
 def test_a_broken_encoder_is_named_by_the_agent_that_needs_it() -> None:
     with pytest.raises(PluginError, match=r"encoder 'broken-patch' \(acme-vpr 1\.2\) does not load"):
         build({"localizer": "nearest-view", "encoder": "broken-patch"})
+
+
+def test_what_an_encoder_says_of_its_options_is_passed_on() -> None:
+    origin = f"vprbench {version('vprbench')}"
+    message = f"encoder log-polar[size=60]: encoder 'log-polar' ({origin}): log-polar: size must be 1..54, not 60"
+    with pytest.raises(ConfigError, match=re.escape(message)):
+        build_encoder({"name": "log-polar", "size": 60})
+
+
+def test_a_plugin_that_makes_something_else_is_told_what_it_lacks(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    info = tmp_path / "odd-9.dist-info"
+    info.mkdir()
+    (info / "METADATA").write_text("Metadata-Version: 2.1\nName: odd\nVersion: 9\n")
+    (info / "entry_points.txt").write_text("[vprbench.encoders]\nodd = builtins:dict\n")
+    monkeypatch.syspath_prepend(str(tmp_path))
+    with pytest.raises(PluginError, match=r"encoder 'odd' \(odd 9\) makes a dict without encode, fit, match"):
+        build_encoder("odd")
 
 
 @pytest.mark.parametrize(

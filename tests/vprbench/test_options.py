@@ -55,6 +55,7 @@ def bare(size, *rest, width=1.0):  # type: ignore[no-untyped-def]  # noqa: ANN00
         (unresolved, ["size", "other"]),
         (bare, ["size", "width"]),
         (lambda size, /, **options: None, []),
+        (dict, []),  # has no signature
     ],
 )
 def test_parameters_are_those_that_go_by_name(factory: Callable[..., object], names: list[str]) -> None:

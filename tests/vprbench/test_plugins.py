@@ -86,7 +86,7 @@ def test_a_reference_that_leads_nowhere_is_a_broken_plugin(
 
 
 def test_an_entry_point_that_is_nothing_to_call_is_refused() -> None:
-    with pytest.raises(PluginError, match="acme_vpr:ANSWER is a int, not a class or function"):
+    with pytest.raises(PluginError, match="acme_vpr:ANSWER is of type int, not a class or function"):
         find("encoder", "constant").load()
 
 
