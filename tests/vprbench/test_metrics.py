@@ -83,6 +83,10 @@ def test_recall_at_one_is_the_accuracy() -> None:
     assert row["recall_at_1_metric"] == row["accuracy_metric"]
 
 
+def test_the_rank_counts_from_zero() -> None:
+    assert recall_at(np.array([0, 4, 5, -1]), 5) == 2 / 4
+
+
 @given(st.lists(st.integers(-1, 30), min_size=1))
 def test_recall_grows_with_depth_to_the_share_that_has_a_right_place(ranks: list[int]) -> None:
     recalls = [recall_at(np.array(ranks), depth) for depth in (*RECALL_DEPTHS, 31)]

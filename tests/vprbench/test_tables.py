@@ -143,6 +143,12 @@ def test_a_failed_cell_is_told_and_never_best() -> None:
     assert entry(make_table(results, columns="environment"), "A", "narrow").cells == 0
 
 
+def test_a_value_of_a_failed_cell_does_not_count() -> None:
+    stale = cell("R2", 2, "A", 0.1) | {"status": "failed"}
+    got = entry(make_table(pd.DataFrame([cell("R1", 2, "A", 0.9), stale])), "A", "2 m")
+    assert (got.mean, got.cells, got.partial) == (0.9, 1, True)
+
+
 def test_a_configuration_that_only_others_were_run_with_is_told() -> None:
     results = pd.DataFrame([cell("R1", 2, "A", 0.9), cell("R1", 2, "B", 0.5), cell("R2", 2, "B", 0.3)])
     table = make_table(results)
