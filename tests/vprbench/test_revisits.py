@@ -78,8 +78,7 @@ def test_a_standing_vehicle_stays_in_its_revisit() -> None:
     assert [twice.test for twice in found(paused)] == [range(395, 630)]
 
 
-def test_no_frames_and_one_frame_have_no_revisit() -> None:
-    assert found(laps(0.0)) == []
+def test_a_single_frame_has_no_revisit() -> None:
     assert found(laps(0.0026)) == []
 
 
