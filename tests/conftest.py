@@ -8,9 +8,14 @@ from pathlib import Path
 import cv2
 import numpy as np
 import pytest
+from hypothesis import settings
 
 from vprbench.route import Camera, Route, Traverse
 from vprbench.types import FRAME_HEIGHT, FRAME_WIDTH, Frame
+
+# A loaded machine is slow, not wrong.
+settings.register_profile("vprbench", deadline=None)
+settings.load_profile("vprbench")
 
 REPOSITORY = Path(__file__).parents[1]
 

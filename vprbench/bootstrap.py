@@ -20,7 +20,7 @@ from vprbench.errors import ConfigError
 from vprbench.precision_recall import Score, Tally, accuracy, extended_precision, pr_auc, pr_auc_all, tally
 from vprbench.trace import Trace
 
-__all__ = ["INTERVAL_METRICS", "block_frames", "intervals", "resample"]
+__all__ = ["INTERVAL_METRICS", "INTERVAL_RULE", "block_frames", "intervals", "resample"]
 
 # `recall_at_1` is the accuracy under its other name.
 INTERVAL_METRICS: Mapping[str, Callable[[Tally], Score]] = {
@@ -30,6 +30,11 @@ INTERVAL_METRICS: Mapping[str, Callable[[Tally], Score]] = {
     "recall_at_1": accuracy,
     "extended_precision": extended_precision,
 }
+
+BLOCK_M, RESAMPLES, LEVEL = 10.0, 2000, 0.95
+
+# Said in every row that carries an interval.
+INTERVAL_RULE = f"{LEVEL:.0%} percentiles of {RESAMPLES} circular block-bootstrap resamples, blocks of {BLOCK_M:g} m"
 
 # Resamples are drawn in chunks of at most this many weights: 8 MB of them at a time.
 CHUNK = 1_000_000
@@ -58,7 +63,7 @@ def block_frames(trace: Trace, block_m: float) -> int:
 
 
 def intervals(
-    trace: Trace, *, block_m: float = 10.0, resamples: int = 2000, level: float = 0.95, seed: int = 0
+    trace: Trace, *, block_m: float = BLOCK_M, resamples: int = RESAMPLES, level: float = LEVEL, seed: int = 0
 ) -> dict[str, float]:
     """Percentile intervals of the metrics in `INTERVAL_METRICS`, by both rules: `auc_low`, `auc_high`, and so on.
 

@@ -20,7 +20,11 @@ Description = TypeVar("Description")
 
 @runtime_checkable
 class Encoder(Protocol):
-    """The what pathway: turns a frame into landmarks, and compares their signatures."""
+    """The what pathway: turns a frame into landmarks, and compares their signatures.
+
+    An encoder may also offer `match_pairs(queries, memory, query_index, memory_index)`, the same matches for listed
+    pairs only; a localizer that knows which pairs matter is faster for it.
+    """
 
     def fit(self, frames: Sequence[Frame]) -> None:
         """Learn from frames that lie off the evaluated route; an encoder without learning does nothing."""

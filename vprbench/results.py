@@ -23,7 +23,7 @@ from vprbench.runner import Outcome
 from vprbench.sweep import Cell
 from vprbench.trace import Trace
 
-__all__ = ["ResultTable"]
+__all__ = ["ResultTable", "read_table"]
 
 # Enough digits to tell any two scores apart, few enough to read.
 FLOAT_FORMAT = "%.6f"

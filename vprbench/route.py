@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
-from typing import Protocol
+from typing import Protocol, runtime_checkable
 
 import numpy as np
 from jaxtyping import Float64, Int64
@@ -16,6 +16,7 @@ from vprbench.types import Frame
 __all__ = ["Camera", "FrameSource", "Route", "Traverse"]
 
 
+@runtime_checkable
 class FrameSource(Protocol):
     """Frames on demand: nothing is read or drawn until it is asked for."""
 
@@ -97,7 +98,7 @@ class Route:
         test: the drive that must recognise them.
         training: drives off the route, for dictionaries and calibration.
         environment: the kind of road, as the paper names it.
-        split: "report" for results, "tuning" for choosing parameters.
+        split: "report" for results, "tuning" for choosing parameters, "control" to answer one question.
     """
 
     name: str

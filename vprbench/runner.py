@@ -9,7 +9,7 @@ from pathlib import Path
 from typing import Any
 
 from vprbench.agents import build, normalise
-from vprbench.bootstrap import intervals
+from vprbench.bootstrap import INTERVAL_RULE, intervals
 from vprbench.catalogue import load_route
 from vprbench.env import RouteEnv
 from vprbench.episode import Recording, calibrate, judge, play
@@ -23,12 +23,13 @@ from vprbench.route import Route
 from vprbench.sweep import Cell, Job
 from vprbench.trace import Trace
 
-__all__ = ["Outcome", "Place", "failure", "run"]
+__all__ = ["Outcome", "failure", "run"]
 
 # The rules behind every number, stated in every row.
 RULES = {
     "tolerance_rule": "d_NN: distance from the query to its nearest learn frame",
     "recall_denominator": "auc: correct top-1; auc_all: all queries",
+    "interval_rule": INTERVAL_RULE,
 }
 
 # Plays the route at one sampling distance: the vigilance or step used, and the answers.
@@ -50,7 +51,7 @@ def run(
     """Answer the cells of a job one by one; a cell that fails is an outcome with its error."""
     try:
         route = load_route(job.route, data=data, routes=routes_file)
-        player = prepare(job, route, report)
+        player = _prepare(job, route, report)
     except Exception as error:
         yield from (failure(job, cell, one_line(error)) for cell in job.cells)
         return
@@ -61,7 +62,7 @@ def run(
             yield failure(job, cell, one_line(error))
 
 
-def prepare(job: Job, route: Route, report: Report) -> Place:
+def _prepare(job: Job, route: Route, report: Report) -> Place:
     """Build and fit the agent; the fastest way to play the route with it."""
     localizer = build(job.config, job.seed)
     report("fit", 0, 1)

@@ -15,7 +15,7 @@ from pydantic import BaseModel, ConfigDict, Field, ValidationError
 from vprbench.agents import Config, is_seeded, validate
 from vprbench.errors import ConfigError, PluginError, nearest
 
-__all__ = ["Cell", "Job", "Sweep", "builtin_sweeps", "jobs", "load_sweep"]
+__all__ = ["Cell", "Job", "Sweep", "builtin_sweeps", "jobs", "load_sweep", "matching", "parse_sweep"]
 
 # Names become parts of cell ids, and so of file names.
 Name = Annotated[str, Field(pattern=r"^[^/\\\s]+$")]
@@ -147,9 +147,12 @@ def parse_sweep(path: Path) -> Sweep:
 
 
 def _explain(error: ValidationError) -> str:
-    """The first fault of a TOML, as one line."""
-    fault = error.errors()[0]
+    """What is wrong with a TOML, as one line: an unknown key first, since it may be a known one misspelt."""
+    faults = error.errors(include_url=False)
+    fault = next((fault for fault in faults if fault["type"] == "extra_forbidden"), faults[0])
     key = ".".join(str(part) for part in fault["loc"])
     if fault["type"] == "extra_forbidden":
         return f"no key is called {key!r}: {nearest(key, Sweep.model_fields)}"
-    return f"{key}: {fault['msg'].lower()} (got {fault['input']!r})"
+    if fault["type"] == "missing":
+        return f"the key {key!r} is missing"
+    return f"{key}: {fault['msg'].lower()}, not {fault['input']!r}"

@@ -7,7 +7,7 @@ from typing import Annotated
 
 import typer
 
-__all__ = ["app"]
+__all__ = ["app", "check", "list_", "run", "score", "sweep", "table"]
 
 app = typer.Typer(
     name="vprbench",

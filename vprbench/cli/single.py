@@ -105,8 +105,8 @@ class _Marked(gym.Wrapper[Observation, dict[str, Any], Observation, dict[str, An
         return self._mark(observation), info
 
     def step(self, action: dict[str, Any]) -> tuple[Observation, Any, bool, bool, dict[str, Any]]:
-        observation, *rest = super().step(action)
-        return (self._mark(observation), *rest)
+        observation, reward, ended, truncated, info = super().step(action)
+        return self._mark(observation), reward, ended, truncated, info
 
     def _mark(self, observation: Observation) -> Observation:
         if self.encoder is not None:
