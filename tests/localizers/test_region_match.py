@@ -101,6 +101,12 @@ def test_a_frame_matches_itself_and_no_other_as_well(seed: int) -> None:
     assert 0 <= foreign < own
 
 
+def test_rounding_does_not_lift_a_score_above_one() -> None:
+    cells = random_cells(6, empty=0.0)
+    own = [score(cells, keep((i, j)), cells)[0] for i, j in product(range(0, 31, 3), repeat=2)]
+    assert 1 - 1e-6 <= min(own) <= max(own) == 1
+
+
 def test_without_kept_regions_or_gradients_the_score_is_zero() -> None:
     cells, empty = random_cells(0), lit()
     everywhere, nowhere = np.ones((31, 31), bool), keep()
