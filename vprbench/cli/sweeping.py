@@ -106,8 +106,11 @@ def _conclude(table: ResultTable, console: Console) -> int:
     frame = table.frame()
     failed = frame[frame["status"] != "ok"]
     if len(failed) < len(frame):
-        for metric in ("auc", "auc_all", "accuracy"):
-            Console().print(to_terminal(make_table(frame, metric=metric)))
+        # One legend serves all three.
+        shown = [to_terminal(make_table(frame, metric=metric)) for metric in ("auc", "auc_all", "accuracy")]
+        for metric_table in shown[:-1]:
+            metric_table.caption = None
+        Console().print(*shown)
     console.print(f"written: {table.csv} (and .parquet, .toml, .traces/)", highlight=False)
     if len(failed):
         console.print(
