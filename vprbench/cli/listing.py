@@ -5,6 +5,7 @@ from __future__ import annotations
 from pathlib import Path
 
 from rich.console import Console
+from rich.markup import escape
 from rich.table import Table
 
 from vprbench.catalogue import catalogue
@@ -14,6 +15,8 @@ from vprbench.plugins import Kind, plugins
 from vprbench.sweep import builtin_sweeps, parse_sweep
 
 __all__ = ["list_command"]
+
+KINDS: tuple[Kind, ...] = ("encoder", "localizer")
 
 
 def list_command(what: str, data: Path | None, routes: Path | None) -> None:
@@ -29,6 +32,9 @@ def list_command(what: str, data: Path | None, routes: Path | None) -> None:
         raise ConfigError(f"cannot list {what!r}: {nearest(what, [*lists, 'all'])}")
     for name in lists if what == "all" else [what]:
         console.print(lists[name]())
+    for kind in KINDS:
+        if what in ("all", f"{kind}s"):
+            _print_faults(kind, console)
 
 
 def _routes(data: Path | None, own: Path | None) -> Table:
@@ -51,9 +57,16 @@ def _plugins(kind: Kind) -> Table:
     """Every plug-in of a kind, where it comes from, and whether it loads."""
     table = _table(f"{kind}s", "name", "distribution", "from", "state")
     for plugin in plugins(kind).values():
-        fault = plugin.fault()
-        table.add_row(plugin.name, plugin.origin, plugin.value, f"[red]{fault}[/red]" if fault else "[green]ok[/green]")
+        state = "[red]does not load[/red]" if plugin.fault() else "[green]ok[/green]"
+        table.add_row(plugin.name, plugin.origin, plugin.value, state)
     return table
+
+
+def _print_faults(kind: Kind, console: Console) -> None:
+    """Why plug-ins do not load, below the tables, where there is room to say it."""
+    for plugin in plugins(kind).values():
+        if fault := plugin.fault():
+            console.print(f"[red]{escape(fault)}[/red]", highlight=False)
 
 
 def _sweeps() -> Table:
