@@ -1,0 +1,149 @@
+"""How long each registered localizer takes to describe a frame, and to answer with 10, 100 and 1000 places.
+
+One that looks through an encoder is timed with each registered encoder.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
+from functools import cache
+from itertools import count, cycle
+from typing import Any, TypeAlias
+from unittest.mock import patch
+
+import numpy as np
+import pytest
+from jaxtyping import Float32, Int64
+from pytest_benchmark.fixture import BenchmarkFixture
+
+from vprbench.agents import label
+from vprbench.observation import Drive
+from vprbench.options import parameters
+from vprbench.plugins import find, plugins
+from vprbench.protocols import DescriptorLocalizer, Encoder, Localizer
+from vprbench.route import Route
+from vprbench.types import Frame, Landmarks, Observation
+
+Agent: TypeAlias = dict[str, str]
+Matrix: TypeAlias = Float32[np.ndarray, "points units"]
+
+# As a vigilance and as a step in metres, 1 makes every frame a place that is far away and matches nothing.
+SAMPLING = 1.0
+
+
+def agents() -> Iterator[Agent]:
+    """Every localizer, with every encoder if it takes one."""
+    for name, plugin in plugins("localizer").items():
+        if "encoder" in parameters(plugin.load()):
+            yield from ({"localizer": name, "encoder": encoder} for encoder in plugins("encoder"))
+        else:
+            yield {"localizer": name}
+
+
+AGENTS = list(agents())
+
+
+class Blank:
+    """An encoder for which no two landmarks have anything in common."""
+
+    def fit(self, frames: object) -> None: ...
+
+    def encode(self, frame: Frame) -> Landmarks:
+        raise NotImplementedError
+
+    def match(self, queries: Matrix, memory: Matrix) -> Matrix:
+        return np.zeros((len(queries), len(memory)), np.float32)
+
+    def match_pairs(
+        self, queries: Matrix, memory: Matrix, query_index: Int64[np.ndarray, " n"], memory_index: object
+    ) -> Float32[np.ndarray, " n"]:
+        return np.zeros(len(query_index), np.float32)
+
+
+@contextmanager
+def hurried(localizer: Localizer, observations: list[Observation]) -> Iterator[None]:
+    """Within it, learning costs little even with many places: frames are neither described nor compared.
+
+    The places become those of `observations`, over and over. A localizer that does not offer `describe` learns as
+    it always does.
+    """
+    if not isinstance(localizer, DescriptorLocalizer):
+        yield
+        return
+    described = cycle([localizer.describe(observation) for observation in observations])
+    stand_ins: dict[str, Any] = {"describe": lambda observation: next(described)}
+    if hasattr(localizer, "encoder"):
+        stand_ins["encoder"] = Blank()
+    with patch.multiple(localizer, **stand_ins):
+        yield
+
+
+class Memory:
+    """A trained localizer, holding as many places as are asked for."""
+
+    def __init__(self, localizer: Localizer, observations: list[Observation]) -> None:
+        self.localizer = localizer
+        self.observations = observations
+        self.places = 0
+        localizer.clear(SAMPLING)
+
+    def hold(self, places: int) -> None:
+        if places < self.places:
+            self.places = 0
+            self.localizer.clear(SAMPLING)
+        with hurried(self.localizer, self.observations):
+            for metres, observation in zip(count(step=1e3), cycle(self.observations)):
+                if self.places == places:
+                    break
+                elsewhere = Observation(**{**observation, "gps": np.array([metres, 0.0])})
+                self.places += self.localizer.learn(elsewhere) is not None
+
+
+@pytest.fixture(scope="module")
+def memory_of(
+    street: Route, training: list[list[Observation]], fitted_encoder: Callable[[str], Encoder]
+) -> Callable[[str, str | None], Memory]:
+    """Memories by localizer and encoder, each trained once for all timings."""
+
+    @cache
+    def trained(name: str, encoder: str | None) -> Memory:
+        options = {"encoder": fitted_encoder(encoder)} if encoder else {}
+        localizer: Any = find("localizer", name).load()(**options)
+        localizer.fit(training)
+        return Memory(localizer, list(Drive(street.learn)))
+
+    return trained
+
+
+@pytest.fixture
+def queries(street: Route) -> Iterator[Observation]:
+    return cycle(Drive(street.test, gps=False)[:])
+
+
+@pytest.fixture
+def memory(memory_of: Callable[[str, str | None], Memory], agent: Agent) -> Memory:
+    return memory_of(agent["localizer"], agent.get("encoder"))
+
+
+@pytest.mark.benchmark(group="describe one frame")
+@pytest.mark.parametrize("agent", AGENTS, ids=label)
+def test_describe(benchmark: BenchmarkFixture, memory: Memory, queries: Iterator[Observation], agent: Agent) -> None:
+    localizer = memory.localizer
+    if not isinstance(localizer, DescriptorLocalizer):
+        pytest.skip("it does not describe frames one by one")
+    localizer.describe(next(queries))
+    benchmark.extra_info |= agent
+    benchmark(lambda: localizer.describe(next(queries)))
+
+
+@pytest.mark.benchmark(group="answer one query")
+@pytest.mark.parametrize("places", [10, 100, 1000])
+@pytest.mark.parametrize("agent", AGENTS, ids=label)
+def test_respond(
+    benchmark: BenchmarkFixture, memory: Memory, queries: Iterator[Observation], agent: Agent, places: int
+) -> None:
+    memory.hold(places)
+    assert memory.localizer.respond(next(queries)).shape == (places,)
+    benchmark.extra_info |= {**agent, "places": places}
+    benchmark(lambda: memory.localizer.respond(next(queries)))
