@@ -26,7 +26,7 @@ HALO = 2  # rows that a 5 x 5 mask reaches beyond a pixel
 
 def cell_histograms(
     image: UInt8[np.ndarray, "height width"], magnitude: Magnitude = "mean"
-) -> Float64[np.ndarray, "height/16 width/16 8"]:
+) -> Float64[np.ndarray, "rows columns 8"]:
     """The gradient strength in eight directions of 45 degrees, of each cell of an image.
 
     The image is first brightened to 255 sqrt(I / max I). A pixel's strength is split between the two directions
@@ -40,7 +40,7 @@ def cell_histograms(
 
 def _strip_histograms(
     strip: UInt8[np.ndarray, "height width"], shades: Float64[np.ndarray, "256"], magnitude: Magnitude
-) -> Float64[np.ndarray, "height/16 width/16 8"]:
+) -> Float64[np.ndarray, "rows columns 8"]:
     """The histograms of a strip of the image, given with the rows above and below that its gradients need."""
     shaded = cv2.LUT(strip, shades)
     gx = cv2.Sobel(shaded, cv2.CV_64F, 1, 0, ksize=5)[HALO:-HALO]
