@@ -9,9 +9,10 @@ import numpy as np
 import pymap3d
 
 from vprbench.route import Route, Traverse
+from vprbench.street.camera import CAMERA
 from vprbench.street.course import build_course
 from vprbench.street.drive import Drive, plan_drive
-from vprbench.street.frames import CAMERA, StreetFrames
+from vprbench.street.frames import StreetFrames
 from vprbench.street.parameters import STREETS, Environment, StreetParameters
 
 __all__ = ["STREETS", "Environment", "StreetParameters", "street_route"]

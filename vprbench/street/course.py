@@ -17,6 +17,11 @@ AHEAD = 160.0
 # Distance between the samples of the centreline, metres.
 SPACING = 0.5
 
+# Half the width of the road and the distance of the facades from its middle, metres: where the street is wide,
+# and where it is narrow.
+_HALF_ROAD = (5.6, 3.8)
+_FACADE = (14.0, 6.2)
+
 _FINE = 10  # integration steps to a sample
 
 Stations = Float64[np.ndarray, " n"]
@@ -49,6 +54,14 @@ class Course:
         """How narrow the street is there, 0..1."""
         return np.interp(station, self.stations, self.narrowness)
 
+    def half_road_at(self, station: Stations) -> Stations:
+        """Half the width of the road, metres."""
+        return _blend(_HALF_ROAD, self.narrowness_at(station))
+
+    def facade_at(self, station: Stations) -> Stations:
+        """Distance of the facades from the middle of the road, metres."""
+        return _blend(_FACADE, self.narrowness_at(station))
+
     def world(self, station: Stations, lateral: Stations) -> Float64[np.ndarray, "n 2"]:
         """East and north of points given along and across the street, metres."""
         heading = self.heading_at(station)
@@ -70,6 +83,10 @@ def build_course(environment: Environment, length: float, seed: int) -> Course:
     centre -= centre[np.searchsorted(fine, 0.0)]
     narrowness = _narrowness(environment, fine[::_FINE], rng)
     return Course(centre[::_FINE], heading[::_FINE], narrowness)
+
+
+def _blend(values: tuple[float, float], narrowness: Stations) -> Stations:
+    return values[0] + (values[1] - values[0]) * narrowness
 
 
 def _bends(environment: Environment, length: float, rng: np.random.Generator) -> list[tuple[float, float, float]]:

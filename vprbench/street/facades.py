@@ -14,7 +14,7 @@ _SIZE = 256
 
 def paint_house(rng: np.random.Generator) -> list[Image]:
     """Front, side, roof and gable of one model of house."""
-    wall = rng.uniform(0.25, 0.75)
+    wall = rng.uniform(0.2, 0.8)
     plain = wall * (1 + 0.05 * fractal(rng, _SIZE, _SIZE))
     front, side = plain.copy(), plain.copy()
     if rng.random() < 0.3:
@@ -23,9 +23,23 @@ def paint_house(rng: np.random.Generator) -> list[Image]:
     storeys, bays = int(rng.integers(2, 5)), int(rng.integers(2, 6))
     _windows(front, rng, storeys, bays)
     _ground_floor(front, rng, storeys, bays)
-    for _ in range(int(rng.integers(0, 3))):
-        _window(side, rng, rng.uniform(0.2, 0.7) * _SIZE, rng.uniform(0.1, 0.6) * _SIZE, 30, 40, 0.8)
+    _gable_end(side, rng)
     return [opaque(front), opaque(side), opaque(_roof(rng)), opaque(plain)]
+
+
+def _gable_end(side: Luma, rng: np.random.Generator) -> None:
+    """Streaks of weather, a plinth, a drain pipe, ivy, and a few windows."""
+    streaks = np.repeat(fractal(rng, 1, _SIZE, 16), _SIZE, axis=0) * np.linspace(1, 0, _SIZE, dtype=np.float32)[:, None]
+    side *= 1 + 0.06 * streaks
+    rectangle(side, 0, _SIZE - rng.uniform(8, 24), _SIZE, _SIZE, rng.uniform(0.1, 0.3))
+    if rng.random() < 0.5:
+        rectangle(side, (left := rng.uniform(4, 240)), 0, left + 3, _SIZE, rng.uniform(0.1, 0.6))
+    if rng.random() < 0.35:
+        ivy = fractal(rng, _SIZE, _SIZE, 64) + np.linspace(-2.5, 1.5, _SIZE)[:, None]
+        side[ivy > 0] = (0.06 * (1 + 0.5 * fractal(rng, _SIZE, _SIZE, 4)))[ivy > 0]
+    size = rng.uniform(24, 40)
+    for x, y in rng.permutation([(x, y) for x in (0.2, 0.45, 0.7) for y in (0.08, 0.38, 0.66)])[: rng.integers(0, 6)]:
+        _window(side, rng, x * _SIZE, y * _SIZE, size, size * 1.2, 0.8)
 
 
 def _courses(front: Luma, rng: np.random.Generator) -> None:
@@ -94,10 +108,10 @@ def _ground_floor(front: Luma, rng: np.random.Generator, storeys: int, bays: int
         left = wide * rng.integers(0, bays)
         rectangle(front, left + 4, top + 14, left + wide * 1.2, _SIZE, rng.uniform(0.15, 0.8))
         front[round(top) + 16 : _SIZE : 6, round(left) + 4 : round(left + wide * 1.2)] *= 0.7
-    left = wide * (int(rng.integers(0, bays)) + 0.5) - 16
-    rectangle(front, left - 4, top + 10, left + 36, _SIZE, rng.uniform(0.4, 0.9))
-    rectangle(front, left, top + 14, left + 32, _SIZE, rng.uniform(0.05, 0.35))
-    rectangle(front, left + 4, top + 18, left + 28, top + 36, 0.08)
+    door = wide * (int(rng.integers(0, bays)) + 0.5) - 16
+    rectangle(front, door - 4, top + 10, door + 36, _SIZE, rng.uniform(0.4, 0.9))
+    rectangle(front, door, top + 14, door + 32, _SIZE, rng.uniform(0.05, 0.35))
+    rectangle(front, door + 4, top + 18, door + 28, top + 36, 0.08)
 
 
 def _lettering(front: Luma, rng: np.random.Generator, top: float) -> None:

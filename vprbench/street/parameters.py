@@ -41,7 +41,7 @@ class StreetParameters:
         seed: which street of its kind.
         lateral_offset: how far the second drive keeps to the left of the first, metres.
         exposure: how much brighter the second drive is exposed, stops (factors of two).
-        occluders: share of parked cars that differ between the drives, and moving cars met on 20 m.
+        occluders: share of the kerb that is parked anew between the drives, and moving cars on 40 m of road.
         sun_shift: how far the sun has turned between the drives, degrees of azimuth.
         noise: standard deviation of the sensor noise of the second drive, grey levels.
         learn_step: mean distance between frames of the first drive, metres.

@@ -1,73 +1,30 @@
-"""The painter: projects every face in sight and fills it, nearest first.
-
-A canvas keeps, beside the light that has reached each pixel, how clear the pixel still is: what lies
-nearer has taken its share, and what lies behind paints only the rest. So every pixel is filled about once,
-and edges and leaves blend with whatever is behind them.
-"""
+"""The painter of solid things: projects every face in sight and hands it to the filler, nearest first."""
 
 from __future__ import annotations
 
-from typing import NamedTuple
-
 import numpy as np
-from jaxtyping import Float32
 from numba import njit
+from numpy.typing import NDArray
 
-from vprbench.street.mesh import BILLBOARD
-from vprbench.street.sunlight import lit
-from vprbench.street.texture import sample
+from vprbench.street.canvas import Canvas, View
+from vprbench.street.fill import fill
+from vprbench.street.mesh import BILLBOARD, Meshes
+from vprbench.street.sunlight import Sunlight
+from vprbench.street.texture import Skins
+from vprbench.street.things import Things
 
-__all__ = ["Canvas", "View", "paint_things"]
+__all__ = ["paint_things"]
 
 _NEAR = 0.4  # metres: nothing nearer to the camera is drawn
-OPAQUE = 0.004  # a pixel no clearer than this is full
-
-
-class View(NamedTuple):
-    """A pinhole camera somewhere in the street: sizes in pixels, place in metres.
-
-    Attributes:
-        fx, fy: focal lengths.
-        cx, cy: principal point; the vehicle's pitch moves cy.
-        east, north, up: where the camera is.
-        cos, sin: of its heading, clockwise from north.
-        station, lateral: the same place in street coordinates.
-    """
-
-    width: int
-    height: int
-    fx: float
-    fy: float
-    cx: float
-    cy: float
-    east: float
-    north: float
-    up: float
-    cos: float
-    sin: float
-    station: float
-    lateral: float
-
-
-class Canvas(NamedTuple):
-    """A frame being painted: the light so far, and how clear each pixel still is (1..0)."""
-
-    light: Float32[np.ndarray, "height width"]
-    clear: Float32[np.ndarray, "height width"]
-
-    @classmethod
-    def blank(cls, height: int, width: int) -> Canvas:
-        """A canvas on which nothing is painted."""
-        return cls(np.zeros((height, width), np.float32), np.ones((height, width), np.float32))
 
 
 @njit(cache=True, error_model="numpy")
-def paint_things(canvas, view, things, meshes, skins, sunlight):  # type: ignore[no-untyped-def]  # noqa: ANN001, ANN201
+def paint_things(canvas: Canvas, view: View, things: Things, meshes: Meshes, skins: Skins, sunlight: Sunlight) -> None:
     """Paint all things, nearest first by their farthest point (which suits walls seen at a slant)."""
     depths = np.empty(things.size)
     for k in range(things.size):
         depths[k] = _depth(view, things[k])
-    corners, polygon, edges = np.empty((4, 3)), np.empty((6, 3)), np.empty((6, 3))
+    corners, polygon, edges, surface = np.empty((4, 3)), np.empty((6, 3)), np.empty((6, 3)), np.empty((4, 3))
     for k in np.argsort(depths, kind="mergesort"):
         if depths[k] < _NEAR:
             continue
@@ -78,13 +35,13 @@ def paint_things(canvas, view, things, meshes, skins, sunlight):  # type: ignore
             if count < 3 or not _project(view, polygon, count, edges):
                 continue
             skin = skins.table[thing.skin + meshes.slots[face]]
-            surface = _surface(thing, meshes.corners[face], sunlight)
-            _fill(canvas, view, polygon, edges, count, corners, skins.texels, skin, surface, sunlight)
+            _light(thing, meshes.corners[face], sunlight, surface)
+            fill(canvas, view, polygon[:count], edges[:count], corners, skins.texels, skin, surface, sunlight)
 
 
 @njit(cache=True, error_model="numpy")
-def _depth(view, thing):  # type: ignore[no-untyped-def]  # noqa: ANN001, ANN202
-    """Distance ahead of the farthest corner of a thing's footprint."""
+def _depth(view: View, thing: np.record) -> float:
+    """Distance ahead of the farthest corner of a thing's footprint, metres."""
     centre = (thing.east - view.east) * view.sin + (thing.north - view.north) * view.cos
     if thing.mesh == BILLBOARD:
         return centre
@@ -94,7 +51,7 @@ def _depth(view, thing):  # type: ignore[no-untyped-def]  # noqa: ANN001, ANN202
 
 
 @njit(cache=True, error_model="numpy")
-def _to_camera(view, thing, local, corners):  # type: ignore[no-untyped-def]  # noqa: ANN001, ANN202
+def _to_camera(view: View, thing: np.record, local: NDArray[np.float64], corners: NDArray[np.float64]) -> None:
     """The corners of a face in camera axes: right, down, ahead."""
     east, north = thing.east - view.east, thing.north - view.north
     right, ahead = east * view.cos - north * view.sin, east * view.sin + north * view.cos
@@ -109,23 +66,25 @@ def _to_camera(view, thing, local, corners):  # type: ignore[no-untyped-def]  # 
 
 
 @njit(cache=True, error_model="numpy")
-def _clip(corners, polygon):  # type: ignore[no-untyped-def]  # noqa: ANN001, ANN202
+def _clip(corners: NDArray[np.float64], polygon: NDArray[np.float64]) -> int:
     """Cut the face off at the near plane; how many corners are left."""
     count = 0
     for i in range(4):
-        here, there = corners[i], corners[(i + 1) & 3]
-        if here[2] >= _NEAR:
-            polygon[count] = here
+        j = (i + 1) & 3
+        here, there = corners[i, 2], corners[j, 2]
+        if here >= _NEAR:
+            polygon[count] = corners[i]
             count += 1
-        if (here[2] >= _NEAR) != (there[2] >= _NEAR):
-            t = (_NEAR - here[2]) / (there[2] - here[2])
-            polygon[count] = here + t * (there - here)
+        if (here >= _NEAR) != (there >= _NEAR):
+            t = (_NEAR - here) / (there - here)
+            for axis in range(3):
+                polygon[count, axis] = corners[i, axis] + t * (corners[j, axis] - corners[i, axis])
             count += 1
     return count
 
 
 @njit(cache=True, error_model="numpy")
-def _project(view, polygon, count, edges):  # type: ignore[no-untyped-def]  # noqa: ANN001, ANN202
+def _project(view: View, polygon: NDArray[np.float64], count: int, edges: NDArray[np.float64]) -> bool:
     """Corners to pixels and edges to lines a x + b y + c (pixels inside); False if seen from behind."""
     area = 0.0
     for i in range(count):
@@ -135,77 +94,36 @@ def _project(view, polygon, count, edges):  # type: ignore[no-untyped-def]  # no
         p, q = polygon[i], polygon[(i + 1) % count]
         dx, dy = q[0] - p[0], q[1] - p[1]
         area += p[0] * q[1] - q[0] * p[1]
-        length = max(np.sqrt(dx * dx + dy * dy), 1e-6)
+        length = np.sqrt(dx * dx + dy * dy)
+        if length < 1e-6:
+            edges[i] = 0.0  # two corners in one place bound nothing
+            continue
         edges[i, 0], edges[i, 1] = -dy / length, dx / length
         edges[i, 2] = (p[0] * dy - p[1] * dx) / length
-        if length < 1e-5:
-            edges[i, 2] = 1e6
     return area > 0.0
 
 
 @njit(cache=True, error_model="numpy")
-def _surface(thing, local, sunlight):  # type: ignore[no-untyped-def]  # noqa: ANN001, ANN202
-    """How a face takes light: shade, sun, and its street coordinates at, per u and per v."""
+def _light(thing: np.record, local: NDArray[np.float64], sunlight: Sunlight, surface: NDArray[np.float64]) -> None:
+    """How a face takes light: (in the shade, added by the sun) and its street coordinates at, per u, per v."""
     size = np.array([thing.length, thing.width, thing.height])
-    u, v = (local[1] - local[0]) * size, (local[3] - local[0]) * size
-    normal = np.cross(v, u)
-    normal /= np.sqrt((normal * normal).sum())
-    east = normal[0] * thing.sin + normal[1] * thing.cos
-    north = normal[0] * thing.cos - normal[1] * thing.sin
-    facing = east * sunlight.toward[0] + north * sunlight.toward[1] + normal[2] * sunlight.toward[2]
-    surface = np.empty((4, 3))
+    for axis in range(3):
+        surface[1, axis] = local[0, axis] * size[axis]
+        surface[2, axis] = (local[1, axis] - local[0, axis]) * size[axis]
+        surface[3, axis] = (local[3, axis] - local[0, axis]) * size[axis]
     if thing.mesh == BILLBOARD:
-        facing, u, v = 0.6, np.zeros(3), np.array([0.0, 0.0, -thing.height])
-    surface[0, 0] = thing.bright * (0.75 + 0.25 * normal[2])
-    surface[0, 1] = thing.bright * sunlight.direct * max(facing, 0.0)
-    at = local[0] * size
-    surface[1] = thing.station + at[0] * thing.forward, thing.lateral + at[1] * thing.forward, thing.up + at[2]
-    surface[2] = u[0] * thing.forward, u[1] * thing.forward, u[2]
-    surface[3] = v[0] * thing.forward, v[1] * thing.forward, v[2]
-    return surface
-
-
-@njit(cache=True, error_model="numpy")
-def _fill(canvas, view, polygon, edges, count, corners, texels, skin, surface, sunlight):  # type: ignore[no-untyped-def]  # noqa: ANN001, ANN202
-    """Paint the pixels of one face, each through the clearness that is left."""
-    top, bottom = polygon[:count, 1].min() - 0.5, polygon[:count, 1].max() + 0.5
-    u_axis, v_axis = corners[1] - corners[0], corners[3] - corners[0]
-    nu, nv, nw = np.cross(v_axis, corners[0]), np.cross(corners[0], u_axis), np.cross(u_axis, v_axis)
-    # Half a pixel of softness runs far out at a sharp corner: the corners themselves bound it.
-    outer_left, outer_right = (
-        max(polygon[:count, 0].min() - 0.5, 0.0),
-        min(polygon[:count, 0].max() + 0.5, view.width - 1.0),
-    )
-    for y in range(max(int(np.ceil(top)), 0), min(int(bottom), view.height - 1) + 1):
-        left, right = outer_left, outer_right
-        for i in range(count):
-            rest = edges[i, 1] * y + edges[i, 2] + 1.0
-            if edges[i, 0] > 1e-9:
-                left = max(left, -rest / edges[i, 0])
-            elif edges[i, 0] < -1e-9:
-                right = min(right, -rest / edges[i, 0])
-            elif rest <= 0.0:
-                right = -1.0
-        ry = (y - view.cy) / view.fy
-        for x in range(int(np.ceil(left)), int(np.floor(right)) + 1):
-            clear = canvas.clear[y, x]
-            if clear <= OPAQUE:
-                continue
-            cover = 1.0
-            for i in range(count):
-                cover = min(cover, edges[i, 0] * x + edges[i, 1] * y + edges[i, 2] + 1.0)
-            rx = (x - view.cx) / view.fx
-            w = 1.0 / (nw[0] * rx + nw[1] * ry + nw[2])
-            u, v = (nu[0] * rx + nu[1] * ry + nu[2]) * w, (nv[0] * rx + nv[1] * ry + nv[2]) * w
-            wx, wy = w / view.fx, w / view.fy
-            du = abs(nu[0] - u * nw[0]) * wx + abs(nu[1] - u * nw[1]) * wy
-            dv = abs(nv[0] - v * nw[0]) * wx + abs(nv[1] - v * nw[1]) * wy
-            luma, alpha = sample(texels, skin, u, v, du, dv)
-            share = surface[0, 1]
-            if share > 0.0 and alpha > 0.0:
-                station = surface[1, 0] + u * surface[2, 0] + v * surface[3, 0]
-                lateral = surface[1, 1] + u * surface[2, 1] + v * surface[3, 1]
-                share *= lit(sunlight, station, lateral, surface[1, 2] + u * surface[2, 2] + v * surface[3, 2])
-            part = clear * max(cover, 0.0) / 255.0
-            canvas.light[y, x] += part * luma * (surface[0, 0] + share)
-            canvas.clear[y, x] = clear - part * alpha
+        surface[0, 0], surface[0, 1] = 0.75, 0.6
+        surface[2, 0] = thing.width  # as if it lay along the street, to be dappled both ways
+    else:
+        normal = np.cross(surface[3], surface[2])
+        normal /= np.sqrt((normal * normal).sum())
+        east = normal[0] * thing.sin + normal[1] * thing.cos
+        north = normal[0] * thing.cos - normal[1] * thing.sin
+        facing = east * sunlight.toward[0] + north * sunlight.toward[1] + normal[2] * sunlight.toward[2]
+        surface[0, 0], surface[0, 1] = 0.75 + 0.25 * normal[2], max(facing, 0.0)
+    surface[0, 0] *= thing.bright
+    surface[0, 1] *= thing.bright * sunlight.direct
+    surface[1:, :2] *= thing.forward
+    surface[1, 0] += thing.station
+    surface[1, 1] += thing.lateral
+    surface[1, 2] += thing.up

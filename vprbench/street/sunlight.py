@@ -11,16 +11,34 @@ from typing import NamedTuple
 import numpy as np
 from jaxtyping import Float64
 from numba import njit
+from numpy.typing import NDArray
 
-from vprbench.street.course import BEHIND, SPACING, Course
+from vprbench.street.course import BEHIND, Course
 
-__all__ = ["CROWN_HIGH", "CROWN_LATERAL", "CROWN_LOW", "WALL_HEIGHT", "WALL_LATERAL", "Outline", "Sunlight", "lit"]
+__all__ = [
+    "CROWN_HIGH",
+    "CROWN_LATERAL",
+    "CROWN_LOW",
+    "WALL_HEIGHT",
+    "WALL_LATERAL",
+    "Outline",
+    "Sunlight",
+    "lit",
+    "shade_stations",
+]
 
 # What stands along the street: (side, station, quantity), side 0 left and 1 right, all in metres.
 Outline = Float64[np.ndarray, "2 stations 5"]
 WALL_LATERAL, WALL_HEIGHT, CROWN_LATERAL, CROWN_LOW, CROWN_HIGH = range(5)
 
+_STEP = 0.125  # metres of street between the samples of an outline
 _PENUMBRA = 0.25  # metres over which a shadow's edge fades
+_LEAVES = 3.0  # clumps of leaves to a metre
+
+
+def shade_stations(course: Course) -> Float64[np.ndarray, " stations"]:
+    """The stations at which outlines are sampled, metres."""
+    return np.arange(-BEHIND, course.stations[-1], _STEP)
 
 
 class Sunlight(NamedTuple):
@@ -49,9 +67,9 @@ class Sunlight(NamedTuple):
         cls, course: Course, outline: Outline, azimuth: float, elevation: float, leaves: Float64[np.ndarray, "64 64"]
     ) -> Sunlight:
         """The sun at an azimuth (clockwise from north) and elevation, radians."""
-        relative = azimuth - course.heading
+        relative = azimuth - course.heading_at(shade_stations(course))
         across = np.sin(relative)
-        per_metre = 1.0 / np.maximum(np.abs(across), 0.05)
+        per_metre = 1.0 / np.maximum(np.abs(across), 0.1)
         flat = np.cos(elevation)
         return cls(
             toward=np.array([np.sin(azimuth) * flat, np.cos(azimuth) * flat, np.sin(elevation)]),
@@ -64,28 +82,37 @@ class Sunlight(NamedTuple):
         )
 
 
-@njit(cache=True, error_model="numpy")
-def lit(sunlight, station, lateral, height):  # type: ignore[no-untyped-def]  # noqa: ANN001, ANN201
+@njit(cache=True, error_model="numpy", inline="always")
+def lit(sunlight: Sunlight, station: float, lateral: float, height: float) -> float:
     """Share of the sun's light, 0..1, that reaches a point given in street coordinates, metres."""
+    light = 1.0
     last = sunlight.along.size - 1
-    here = min(max(int((station + BEHIND) / SPACING), 0), last)
-    side = sunlight.side[here]
-    row = sunlight.outline[1 if side > 0 else 0]
-    across = row[here, WALL_LATERAL] - side * lateral
-    if across < 0.2:
-        return 1.0
-    there = min(max(int((station + across * sunlight.along[here] + BEHIND) / SPACING), 0), last)
-    over = height + across * sunlight.rise[here] - row[there, WALL_HEIGHT]
-    light = min(max(over / _PENUMBRA + 0.5, 0.0), 1.0)
-    across = row[here, CROWN_LATERAL] - side * lateral
-    if across <= 0.0 or light == 0.0:
-        return light
-    behind = station + across * sunlight.along[here]
-    there = min(max(int((behind + BEHIND) / SPACING), 0), last)
-    up = height + across * sunlight.rise[here]
-    low, high = row[there, CROWN_LOW], row[there, CROWN_HIGH]
-    inside = min(max((min(up - low, high - up)) * 2.0 + 0.5, 0.0), 1.0)
-    if inside > 0.0:
-        gap = sunlight.leaves[int(up * 5.0) & 63, int(behind * 5.0) & 63]
-        light *= 1.0 - inside * (0.6 + 0.4 * gap)
+    here = min(max(int((station + BEHIND) / _STEP), 0), last)
+    side, along, rise = sunlight.side[here], sunlight.along[here], sunlight.rise[here]
+    row = 1 if side > 0 else 0
+    across = sunlight.outline[row, here, WALL_LATERAL] - side * lateral
+    if across > 0.2:
+        there = min(max(int((station + across * along + BEHIND) / _STEP), 0), last)
+        wall = sunlight.outline[row, there, WALL_HEIGHT]
+        light = min(max((height + across * rise - wall) / _PENUMBRA + 0.5, 0.0), 1.0)
+    across = sunlight.outline[row, here, CROWN_LATERAL] - side * lateral
+    if across > 0.0 and light > 0.0:
+        at = station + across * along
+        there = min(max(int((at + BEHIND) / _STEP), 0), last)
+        up = height + across * rise
+        low, high = sunlight.outline[row, there, CROWN_LOW], sunlight.outline[row, there, CROWN_HIGH]
+        inside = min(max(min(up - low, high - up) * 1.5 + 0.5, 0.0), 1.0)
+        if inside > 0.0:
+            light *= 1.0 - inside * _leafage(sunlight.leaves, at * _LEAVES, up * _LEAVES)
     return light
+
+
+@njit(cache=True, error_model="numpy")
+def _leafage(leaves: NDArray[np.float64], x: float, y: float) -> float:
+    """How much light a crown holds back at one spot, 0..1; the pattern repeats."""
+    i, j = int(np.floor(x)), int(np.floor(y))
+    fx, fy = x - i, y - j
+    i, j, right, below = i & 63, j & 63, (i + 1) & 63, (j + 1) & 63
+    upper = leaves[j, i] + fx * (leaves[j, right] - leaves[j, i])
+    lower = leaves[below, i] + fx * (leaves[below, right] - leaves[below, i])
+    return min(max((upper + fy * (lower - upper)) * 4.0 - 0.8, 0.35), 1.0)

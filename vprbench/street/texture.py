@@ -10,12 +10,17 @@ from collections.abc import Sequence
 from typing import NamedTuple
 
 import numpy as np
-from jaxtyping import Float32, Int64, UInt8
+from jaxtyping import Float32, Int64, UInt16
 from numba import njit
+from numpy.typing import NDArray
 
 from vprbench.errors import ConfigError
 
-__all__ = ["Image", "Skins", "sample", "stack_skins"]
+__all__ = ["Image", "Skins", "choose_level", "sample", "stack_skins"]
+
+# A level is halved once more as long as a pixel covers more of its texels than this (our choice: about
+# the geometric middle of one and two).
+_FINEST = 1.4
 
 # Reflectance 0..1 multiplied by opacity, and opacity 0..1.
 Image = Float32[np.ndarray, "height width 2"]
@@ -25,11 +30,11 @@ class Skins(NamedTuple):
     """All textures of a street in one buffer.
 
     Attributes:
-        texels: luma (multiplied by alpha) and alpha of every texel of every ripmap.
+        texels: of every ripmap, luma (multiplied by alpha) in the high byte and alpha in the low one.
         table: (n, 3) row of the first texel, and the binary logarithms of width and height.
     """
 
-    texels: UInt8[np.ndarray, "texels 2"]
+    texels: UInt16[np.ndarray, " texels"]
     table: Int64[np.ndarray, "n 3"]
 
 
@@ -40,18 +45,19 @@ def stack_skins(images: Sequence[Image]) -> Skins:
         height, width = image.shape[:2]
         if width & (width - 1) or height & (height - 1):
             raise ConfigError(f"street: a texture of {width}x{height} texels: sides must be powers of two")
-        blocks.append(_ripmap(image).reshape(-1, 2))
+        blocks.append(_ripmap(image).reshape(-1))
         table.append((offset, width.bit_length() - 1, height.bit_length() - 1))
         offset += len(blocks[-1])
     return Skins(np.concatenate(blocks), np.array(table, np.int64))
 
 
-def _ripmap(image: Image) -> UInt8[np.ndarray, "height2 width2 2"]:
+def _ripmap(image: Image) -> UInt16[np.ndarray, "height2 width2"]:
     """Level (i, j), halved i times in width and j in height, lies at (2w - 2w/2^i, 2h - 2h/2^j)."""
     rows = np.concatenate(_halvings(image, axis=0), axis=0)
     both = np.concatenate(_halvings(rows, axis=1), axis=1)
     full = np.pad(both, ((0, 1), (0, 1), (0, 0)))
-    return (np.clip(full, 0.0, 1.0) * 255.0 + 0.5).astype(np.uint8)
+    texels = (np.clip(full, 0.0, 1.0) * 255.0 + 0.5).astype(np.uint16)
+    return texels[..., 0] << 8 | texels[..., 1]
 
 
 def _halvings(image: Image, axis: int) -> list[Image]:
@@ -62,30 +68,37 @@ def _halvings(image: Image, axis: int) -> list[Image]:
 
 
 @njit(cache=True, error_model="numpy")
-def sample(texels, skin, u, v, footprint_u, footprint_v):  # type: ignore[no-untyped-def]  # noqa: ANN001, ANN201
-    """Luma and alpha (0..255) of a texture at (u, v) in 0..1, averaged over about one pixel's footprint."""
-    offset, log_w, log_h = skin[0], skin[1], skin[2]
-    width, height = 1 << log_w, 1 << log_h
-    stride = 2 * width
-    i, j = 0, 0
-    spread = footprint_u * width
-    while spread > 1.4 and i < log_w:
-        spread *= 0.5
-        i += 1
-    spread = footprint_v * height
-    while spread > 1.4 and j < log_h:
-        spread *= 0.5
-        j += 1
-    w, h = width >> i, height >> j
+def choose_level(skin: NDArray[np.int64], footprint_u: float, footprint_v: float) -> tuple[int, int, int]:
+    """First texel, width and height of the level whose texels are about as large as a pixel's footprint.
+
+    Footprints are in parts of the texture's width and height.
+    """
+    width, height = 1 << skin[1], 1 << skin[2]
+    w, h = width, height
+    spread_u, spread_v = footprint_u * width, footprint_v * height
+    while spread_u > _FINEST and w > 1:
+        spread_u, w = spread_u * 0.5, w >> 1
+    while spread_v > _FINEST and h > 1:
+        spread_v, h = spread_v * 0.5, h >> 1
+    return skin[0] + (2 * height - 2 * h) * 2 * width + 2 * width - 2 * w, w, h
+
+
+@njit(cache=True, error_model="numpy", inline="always")
+def sample(
+    texels: NDArray[np.uint16], skin: NDArray[np.int64], level: tuple[int, int, int], u: float, v: float
+) -> tuple[float, float]:
+    """Luma (multiplied by alpha) and alpha, 0..255, of one level at (u, v) in 0..1, bilinear."""
+    first, w, h = level
+    stride = 2 << skin[1]
     x = min(max(u * w - 0.5, 0.0), w - 1.0)
     y = min(max(v * h - 0.5, 0.0), h - 1.0)
     x0, y0 = int(x), int(y)
     fx, fy = x - x0, y - y0
-    step_x = 1 if x0 < w - 1 else 0
-    step_y = stride if y0 < h - 1 else 0
-    at = offset + (2 * height - 2 * h + y0) * stride + (2 * width - 2 * w + x0)
-    below = at + step_y
-    a, b, c, d = (1 - fx) * (1 - fy), fx * (1 - fy), (1 - fx) * fy, fx * fy
-    luma = a * texels[at, 0] + b * texels[at + step_x, 0] + c * texels[below, 0] + d * texels[below + step_x, 0]
-    alpha = a * texels[at, 1] + b * texels[at + step_x, 1] + c * texels[below, 1] + d * texels[below + step_x, 1]
+    at = first + y0 * stride + x0
+    right = 1 if x0 < w - 1 else 0
+    below = at + (stride if y0 < h - 1 else 0)
+    a, b, c, d = texels[at], texels[at + right], texels[below], texels[below + right]
+    wa, wb, wc, wd = (1 - fx) * (1 - fy), fx * (1 - fy), (1 - fx) * fy, fx * fy
+    luma = wa * (a >> 8) + wb * (b >> 8) + wc * (c >> 8) + wd * (d >> 8)
+    alpha = wa * (a & 255) + wb * (b & 255) + wc * (c & 255) + wd * (d & 255)
     return luma, alpha

@@ -1,48 +1,60 @@
-"""What stands in a street: one record for each house, tree, car, pole or mark."""
+"""What stands in a street: one record for each house, tree, car, post or mark."""
 
 from __future__ import annotations
 
-from typing import Any
+from collections.abc import Sequence
+from typing import NamedTuple
 
 import numpy as np
 
 from vprbench.street.course import Course
 
-__all__ = ["THING", "Things", "place", "stand"]
-
-# Sizes and positions in metres; `forward` is +1 where the object heads along the street and -1 where it
-# heads against it; `bright` multiplies the texture.
-THING = np.dtype(
-    [
-        (name, np.int64 if name in ("mesh", "skin") else np.float64)
-        for name in (
-            *("east", "north", "up", "cos", "sin", "length", "width", "height"),
-            *("station", "lateral", "forward", "bright", "mesh", "skin"),
-        )
-    ]
-)
-Things = np.ndarray[tuple[int], np.dtype[Any]]
+__all__ = ["Thing", "Things", "place", "stand"]
 
 
-def place(course: Course, rows: list[dict[str, float]]) -> Things:
-    """The records of objects given in street coordinates, sorted by station.
+class Thing(NamedTuple):
+    """One object in street coordinates, metres.
 
-    Each row holds station, lateral, length, width, height, mesh and skin; optional are up (0), bright (1)
-    and forward (+1; -1 turns the object round).
+    Attributes:
+        mesh: which of the meshes it is, and `skin` its first texture.
+        station, lateral, up: where it stands.
+        length, width, height: its size along, across and upwards.
+        forward: +1 where it heads along the street, -1 where it is turned round.
+        bright: multiplies its texture.
     """
-    rows = sorted(rows, key=lambda row: row["station"])
-    things = np.zeros(len(rows), THING)
-    for key, default in (("up", 0.0), ("bright", 1.0), ("forward", 1.0)):
-        things[key] = [row.get(key, default) for row in rows]
-    for key in ("station", "lateral", "length", "width", "height", "mesh", "skin"):
-        things[key] = [row[key] for row in rows]
-    stand(course, things)
-    return things
+
+    mesh: int
+    skin: int
+    station: float
+    lateral: float
+    length: float = 0.0
+    width: float = 1.0
+    height: float = 1.0
+    up: float = 0.0
+    forward: float = 1.0
+    bright: float = 1.0
 
 
-def stand(course: Course, things: Things) -> None:
-    """Set each object's place and direction on the ground plane from its street coordinates."""
-    positions = course.world(things["station"], things["lateral"])
-    things["east"], things["north"] = positions[:, 0], positions[:, 1]
-    heading = course.heading_at(things["station"])
-    things["cos"], things["sin"] = np.cos(heading) * things["forward"], np.sin(heading) * things["forward"]
+# The records of things, with their place (east, north, metres) and direction (cos, sin) on the ground plane.
+Things = np.ndarray[tuple[int], np.dtype[np.void]]
+_RECORD = np.dtype(
+    [(name, np.int64 if name in ("mesh", "skin") else np.float64) for name in Thing._fields]
+    + [(name, np.float64) for name in ("east", "north", "cos", "sin")]
+)
+
+
+def place(course: Course, things: Sequence[Thing]) -> Things:
+    """The records of things, in the order of their stations."""
+    ordered = sorted(things, key=lambda thing: thing.station)
+    records = np.zeros(len(ordered), _RECORD)
+    for name in Thing._fields:
+        records[name] = [getattr(thing, name) for thing in ordered]
+    stand(course, records)
+    return records
+
+
+def stand(course: Course, records: Things) -> None:
+    """Set the place and direction of every record from its street coordinates."""
+    positions, heading = course.world(records["station"], records["lateral"]), course.heading_at(records["station"])
+    records["east"], records["north"] = positions[:, 0], positions[:, 1]
+    records["cos"], records["sin"] = np.cos(heading) * records["forward"], np.sin(heading) * records["forward"]

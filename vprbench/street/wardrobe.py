@@ -18,7 +18,7 @@ __all__ = ["Wardrobe", "paint_wardrobe"]
 
 # How many models of each kind a street has.
 _HOUSES, _TREES, _CONIFERS, _BUSHES, _HEDGES, _SIGNS, _MARKS = 12, 4, 2, 3, 2, 6, 6
-_PAINTS = (0.03, 0.08, 0.2, 0.45, 0.8)
+_PAINTS = (0.04, 0.1, 0.22, 0.4, 0.6, 0.8)
 
 
 @dataclass(frozen=True)
