@@ -3,13 +3,17 @@
 from __future__ import annotations
 
 import multiprocessing
+import os
 from collections.abc import Iterator, Sequence
 from concurrent.futures import FIRST_COMPLETED, Future, wait
 from dataclasses import dataclass
 from functools import partial
+from multiprocessing.context import SpawnContext
+from multiprocessing.managers import SyncManager
 from pathlib import Path
 from queue import Empty, Queue
-from time import monotonic
+from threading import Thread
+from time import monotonic, sleep
 
 import cv2
 from pebble import ProcessExpired, ProcessPool
@@ -55,7 +59,7 @@ class Progress:
 def run_all(todo: Sequence[Job], settings: Settings) -> Iterator[Progress | Outcome]:
     """Run jobs; yields their progress, and each outcome as soon as it is known."""
     context = multiprocessing.get_context("spawn")
-    with context.Manager() as manager, ProcessPool(settings.workers, context=context) as pool:
+    with _manager(context) as manager, ProcessPool(settings.workers, context=context) as pool:
         messages: Queue[Progress | Outcome] = manager.Queue()
         submit = partial(pool.schedule, _work, timeout=settings.timeout)
         pending: dict[Future[None], Job] = {
@@ -77,6 +81,24 @@ def run_all(todo: Sequence[Job], settings: Settings) -> Iterator[Progress | Outc
         except BaseException:
             pool.stop()
             raise
+
+
+def _manager(context: SpawnContext) -> SyncManager:
+    """The process that holds the queue: unlike a pipe, it survives a worker killed in the middle of a message."""
+    manager = SyncManager(ctx=context)
+    manager.start(_end_with, (os.getpid(),))
+    return manager
+
+
+def _end_with(parent: int) -> None:
+    """Watch the parent, and end when it is gone, since a killed one tells nobody."""
+
+    def watch() -> None:
+        while os.getppid() == parent:
+            sleep(1.0)
+        os._exit(1)
+
+    Thread(target=watch, daemon=True).start()
 
 
 def _work(job: Job, number: int, settings: Settings, messages: Queue[Progress | Outcome]) -> None:

@@ -17,9 +17,6 @@ def main() -> None:
     except VprbenchError as error:
         sys.stderr.write(f"vprbench: {error}\n")
         sys.exit(error.exit_code)
-    except KeyboardInterrupt:
-        sys.stderr.write("vprbench: interrupted; what was finished is kept\n")
-        sys.exit(130)
     except BrokenPipeError:
         # The reader of our output has gone, as `| head` does: nothing is left to say to it.
         sys.stderr.close()

@@ -52,7 +52,11 @@ def sweep_command(request: Request) -> int:
         print_estimate(todo, settings, Console())
         return 0
     table.begin(question)
-    _measure(todo, settings, table, console)
+    try:
+        _measure(todo, settings, table, console)
+    except KeyboardInterrupt:
+        console.print("interrupted: what was finished is kept, and the same command goes on from there")
+        return 130
     return _conclude(table, console)
 
 
