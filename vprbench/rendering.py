@@ -6,7 +6,7 @@ from dataclasses import dataclass
 
 import cv2
 import numpy as np
-from jaxtyping import Float32, Float64, Int64, UInt8
+from jaxtyping import Float32, Float64, Int32, Int64, UInt8
 
 from vprbench.route import Route, Traverse
 from vprbench.types import FRAME_HEIGHT, FRAME_WIDTH, NO_PLACE
@@ -82,7 +82,7 @@ def _map(scene: Scene) -> Picture:
     """Both drives from above, north up, with the places, the vehicle and the retrieved place."""
     picture = np.full((FRAME_HEIGHT, FRAME_WIDTH, 3), PAPER, np.uint8)
     learn, test = scene.route.learn.positions, scene.route.test.positions
-    pixels = _projector(np.concatenate([learn, test]))
+    pixels = _Projector(np.concatenate([learn, test]))
     for path, colour in ((learn, LEARN), (test, TEST)):
         cv2.polylines(picture, [pixels(path)], False, colour, 1, cv2.LINE_AA)
     for point in pixels(learn[scene.place_frames[scene.place_frames != NO_PLACE]]):
@@ -93,7 +93,7 @@ def _map(scene: Scene) -> Picture:
     return picture
 
 
-class _projector:
+class _Projector:
     """Maps metres to pixels so that given positions fill the map with one scale on both axes."""
 
     def __init__(self, positions: Float64[np.ndarray, "n 2"]) -> None:
@@ -102,7 +102,7 @@ class _projector:
         self.scale = float((room / np.maximum(high - low, 1.0)).min())
         self.middle = (low + high) / 2
 
-    def __call__(self, positions: Float64[np.ndarray, "n 2"]) -> Int64[np.ndarray, "n 2"]:
+    def __call__(self, positions: Float64[np.ndarray, "n 2"]) -> Int32[np.ndarray, "n 2"]:
         east_north = (positions - self.middle) * self.scale
         corner = np.array([FRAME_WIDTH / 2, FRAME_HEIGHT / 2])
         return (corner + east_north * [1.0, -1.0]).round().astype(np.int32)

@@ -62,8 +62,8 @@ def test_an_unknown_response_is_no_reason_to_stay() -> None:
     assert columns(np.full((3, 3), np.nan, np.float32), 0.5) == [0, 1, 2]
 
 
-@pytest.mark.parametrize("target", [1, 5, 37, 49])
-def test_bisection_reaches_a_count_that_can_be_reached(target: int) -> None:
+@pytest.mark.parametrize("target", [1.0, 5.0, 37.0, 49.0])
+def test_bisection_reaches_a_count_that_can_be_reached(target: float) -> None:
     vigilance = bisect_vigilance(lambda v: 1 + int(49 * v**3), target)
     assert 1 + int(49 * vigilance**3) == target
 
