@@ -13,22 +13,30 @@ from vprbench.street.camera import CAMERA
 from vprbench.street.course import build_course
 from vprbench.street.drive import Drive, plan_drive
 from vprbench.street.frames import StreetFrames
+from vprbench.street.kitti_tree import draw_kitti, draw_kitti_raw
 from vprbench.street.parameters import STREETS, Environment, StreetParameters
 
-__all__ = ["STREETS", "Environment", "StreetParameters", "street_route"]
+__all__ = ["STREETS", "Environment", "StreetParameters", "draw_kitti", "draw_kitti_raw", "street_route"]
 
 # Part of every checksum: to be counted up whenever the same parameters draw other pictures.
 _EDITION = 1
 _TRAINING_LENGTH = 100.0
+_SEEDS = 2**31  # a training street lies half of all seeds away, where nobody looks for one to evaluate
 _ENVIRONMENTS = {"wide": "large roads", "narrow": "narrow streets", "mixed": "mixed"}
 
 
 def street_route(parameters: StreetParameters, *, name: str) -> Route:
-    """A drawn street driven twice, and a drive through another street of its kind to train on."""
-    elsewhere = replace(parameters, seed=parameters.seed + 1, length=_TRAINING_LENGTH)
+    """A drawn street driven twice, and a drive through another street of its kind to train on.
+
+    The difficulty is that of the second drive alone: what was learned once serves a whole robustness curve.
+    """
+    first = StreetParameters(
+        parameters.environment, parameters.length, parameters.seed, learn_step=parameters.learn_step
+    )
+    elsewhere = replace(first, seed=(parameters.seed + _SEEDS // 2) % _SEEDS, length=_TRAINING_LENGTH)
     return Route(
         name=name,
-        learn=_traverse(parameters, "learn", f"{name}, learn"),
+        learn=_traverse(first, "learn", f"{name}, learn"),
         test=_traverse(parameters, "test", f"{name}, test"),
         training=(_traverse(elsewhere, "learn", f"{name}, training"),),
         environment=_ENVIRONMENTS[parameters.environment],

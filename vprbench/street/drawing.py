@@ -11,7 +11,7 @@ from vprbench.street.drive import Drive, Motion
 from vprbench.street.film import develop
 from vprbench.street.mesh import MESHES
 from vprbench.street.parameters import StreetParameters
-from vprbench.street.raster import paint_things
+from vprbench.street.raster import nearest_first, paint_things
 from vprbench.street.stage import Stage, set_stage
 from vprbench.street.things import Things
 from vprbench.types import FRAME_HEIGHT, FRAME_WIDTH, Frame
@@ -20,8 +20,8 @@ __all__ = ["draw_frame", "paint", "view_at"]
 
 # How far one sees along the street, metres.
 _SIGHT_BEHIND, _SIGHT_AHEAD = 12.0, 140.0
-# Even the first drive's sensor has some noise, grey levels.
-_LEAST_NOISE = 2.0
+# Standard deviation of the sensor noise of the first drive, grey levels.
+_FIRST_NOISE = 2.0
 
 
 def draw_frame(parameters: StreetParameters, drive: Drive, index: int) -> Frame:
@@ -31,7 +31,7 @@ def draw_frame(parameters: StreetParameters, drive: Drive, index: int) -> Frame:
     return develop(
         paint(stage, index).light,
         stops=parameters.exposure if second else 0.0,
-        noise=parameters.noise if second else min(parameters.noise, _LEAST_NOISE),
+        noise=parameters.noise if second else _FIRST_NOISE,
         rng=np.random.default_rng([parameters.seed, 9, second, index]),
     )
 
@@ -43,7 +43,7 @@ def paint(stage: Stage, index: int) -> Canvas:
     skins, models = scenery.wardrobe.skins, scenery.wardrobe.models
     groups = (scenery.things, stage.parked, stage.traffic.at(scenery.course, view.station, index))
     things = np.concatenate([_in_sight(group, view.station) for group in groups])
-    paint_things(canvas, view, things, MESHES, skins, stage.sunlight)
+    paint_things(canvas, view, nearest_first(view, things), MESHES, skins, stage.sunlight)
     paint_ground(canvas, view, scenery.ground, skins.texels, skins.table[models["ground"][0]], stage.sunlight)
     paint_sky(canvas, view, skins.texels, skins.table[stage.sky])
     return canvas

@@ -10,7 +10,7 @@ from vprbench.street.canvas import OPAQUE, Canvas, View
 from vprbench.street.sunlight import Sunlight, lit
 from vprbench.street.texture import choose_level, sample
 
-__all__ = ["fill"]
+__all__ = ["cross", "fill"]
 
 # A face reaches this far beyond its edges, pixels: fading there, it meets its neighbour without a gap.
 _RIM = 1.0
@@ -49,9 +49,9 @@ def fill(
     """
     plane = _plane(view, corners)
     # A fading rim would run far out at a sharp corner: the corners themselves bound it.
-    left, right = max(polygon[:, 0].min() - 0.5, 0.0), min(polygon[:, 0].max() + 0.5, view.width - 1.0)
-    top, bottom = int(np.ceil(polygon[:, 1].min() - 0.5)), int(polygon[:, 1].max() + 0.5)
-    for y in range(max(top, 0), min(bottom, view.height - 1) + 1):
+    left, right = _span(polygon, 0, view.width - 1.0)
+    top, bottom = _span(polygon, 1, view.height - 1.0)
+    for y in range(int(np.ceil(top)), int(np.floor(bottom)) + 1):
         columns = _interval(edges, y, left, right)
         if columns[0] <= columns[1]:
             _fill_row(canvas, y, columns, plane, edges, texels, skin, surface, sunlight)
@@ -103,18 +103,33 @@ def _plane(view: View, corners: NDArray[np.float64]) -> _Plane:
     A ray r meets the plane through corner o, spanned by the axes u and v, where u = r . (v x o) / r . (u x v)
     and v = r . (o x u) / r . (u x v).
     """
-    u_axis, v_axis = corners[1] - corners[0], corners[3] - corners[0]
+    origin, u_axis, v_axis = corners[0], corners[1] - corners[0], corners[3] - corners[0]
     return (
-        _in_pixels(view, np.cross(v_axis, corners[0])),
-        _in_pixels(view, np.cross(corners[0], u_axis)),
-        _in_pixels(view, np.cross(u_axis, v_axis)),
+        _in_pixels(view, cross(v_axis, origin)),
+        _in_pixels(view, cross(origin, u_axis)),
+        _in_pixels(view, cross(u_axis, v_axis)),
     )
 
 
 @njit(cache=True, error_model="numpy")
-def _in_pixels(view: View, normal: NDArray[np.float64]) -> _Line:
+def cross(a: NDArray[np.float64], b: NDArray[np.float64]) -> _Line:
+    """The vector product of a and b."""
+    return a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]
+
+
+@njit(cache=True, error_model="numpy")
+def _in_pixels(view: View, normal: _Line) -> _Line:
     a, b = normal[0] / view.fx, normal[1] / view.fy
     return a, b, normal[2] - a * view.cx - b * view.cy
+
+
+@njit(cache=True, error_model="numpy")
+def _span(polygon: NDArray[np.float64], axis: int, last: float) -> tuple[float, float]:
+    """From where to where a face reaches on one axis of the picture, pixels."""
+    low, high = polygon[0, axis], polygon[0, axis]
+    for i in range(1, polygon.shape[0]):
+        low, high = min(low, polygon[i, axis]), max(high, polygon[i, axis])
+    return max(low - 0.5, 0.0), min(high + 0.5, last)
 
 
 @njit(cache=True, error_model="numpy")

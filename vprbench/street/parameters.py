@@ -41,7 +41,8 @@ class StreetParameters:
         seed: which street of its kind.
         lateral_offset: how far the second drive keeps to the left of the first, metres.
         exposure: how much brighter the second drive is exposed, stops (factors of two).
-        occluders: share of the kerb that is parked anew between the drives, and moving cars on 40 m of road.
+        occluders: share of the kerb that is parked anew between the drives, and moving cars on 40 m of road
+            on the second.
         sun_shift: how far the sun has turned between the drives, degrees of azimuth.
         noise: standard deviation of the sensor noise of the second drive, grey levels.
         learn_step: mean distance between frames of the first drive, metres.
@@ -68,6 +69,8 @@ class StreetParameters:
             value = getattr(self, key)
             if not (math.isfinite(value) and low <= value <= high):
                 raise ConfigError(f"street: {key} = {value}: allowed are {low} to {high} {unit}".rstrip())
+        if self.seed != int(self.seed):
+            raise ConfigError(f"street: seed = {self.seed}: must be a whole number")
 
     def __str__(self) -> str:
         return ", ".join(f"{key}={value}" for key, value in asdict(self).items())

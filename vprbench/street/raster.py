@@ -7,47 +7,41 @@ from numba import njit
 from numpy.typing import NDArray
 
 from vprbench.street.canvas import Canvas, View
-from vprbench.street.fill import fill
+from vprbench.street.fill import cross, fill
 from vprbench.street.mesh import BILLBOARD, Meshes
 from vprbench.street.sunlight import Sunlight
 from vprbench.street.texture import Skins
 from vprbench.street.things import Things
 
-__all__ = ["paint_things"]
+__all__ = ["nearest_first", "paint_things"]
 
 _NEAR = 0.4  # metres: nothing nearer to the camera is drawn
 
 
+def nearest_first(view: View, things: Things) -> Things:
+    """The things ahead of the camera, sorted by their farthest point (which suits walls seen at a slant)."""
+    east, north = things["east"] - view.east, things["north"] - view.north
+    along = np.abs(things["sin"] * view.sin + things["cos"] * view.cos) * things["length"] / 2
+    across = np.abs(things["cos"] * view.sin - things["sin"] * view.cos) * things["width"]
+    reach = np.where(things["mesh"] == BILLBOARD, 0.0, along + across)
+    depth = east * view.sin + north * view.cos + reach
+    order = np.argsort(depth, kind="stable")
+    return things[order[depth[order] > _NEAR]]
+
+
 @njit(cache=True, error_model="numpy")
 def paint_things(canvas: Canvas, view: View, things: Things, meshes: Meshes, skins: Skins, sunlight: Sunlight) -> None:
-    """Paint all things, nearest first by their farthest point (which suits walls seen at a slant)."""
-    depths = np.empty(things.size)
+    """Paint all things in the order given: nearest first."""
+    corners, polygon, edges, surface = np.empty((4, 3)), np.empty((5, 3)), np.empty((5, 3)), np.empty((4, 3))
     for k in range(things.size):
-        depths[k] = _depth(view, things[k])
-    corners, polygon, edges, surface = np.empty((4, 3)), np.empty((6, 3)), np.empty((6, 3)), np.empty((4, 3))
-    for k in np.argsort(depths, kind="mergesort"):
-        if depths[k] < _NEAR:
-            continue
         thing = things[k]
         for face in range(meshes.first[thing.mesh], meshes.first[thing.mesh + 1]):
             _to_camera(view, thing, meshes.corners[face], corners)
             count = _clip(corners, polygon)
-            if count < 3 or not _project(view, polygon, count, edges):
-                continue
-            skin = skins.table[thing.skin + meshes.slots[face]]
-            _light(thing, meshes.corners[face], sunlight, surface)
-            fill(canvas, view, polygon[:count], edges[:count], corners, skins.texels, skin, surface, sunlight)
-
-
-@njit(cache=True, error_model="numpy")
-def _depth(view: View, thing: np.record) -> float:
-    """Distance ahead of the farthest corner of a thing's footprint, metres."""
-    centre = (thing.east - view.east) * view.sin + (thing.north - view.north) * view.cos
-    if thing.mesh == BILLBOARD:
-        return centre
-    along = abs(thing.sin * view.sin + thing.cos * view.cos) * thing.length * 0.5
-    across = abs(thing.cos * view.sin - thing.sin * view.cos) * thing.width
-    return centre + along + across
+            if count >= 3 and _project(view, polygon, count, edges):
+                skin = skins.table[thing.skin + meshes.slots[face]]
+                _light(thing, meshes.corners[face], sunlight, surface)
+                fill(canvas, view, polygon[:count], edges[:count], corners, skins.texels, skin, surface, sunlight)
 
 
 @njit(cache=True, error_model="numpy")
@@ -73,7 +67,7 @@ def _clip(corners: NDArray[np.float64], polygon: NDArray[np.float64]) -> int:
         j = (i + 1) & 3
         here, there = corners[i, 2], corners[j, 2]
         if here >= _NEAR:
-            polygon[count] = corners[i]
+            polygon[count, 0], polygon[count, 1], polygon[count, 2] = corners[i, 0], corners[i, 1], corners[i, 2]
             count += 1
         if (here >= _NEAR) != (there >= _NEAR):
             t = (_NEAR - here) / (there - here)
@@ -91,39 +85,41 @@ def _project(view: View, polygon: NDArray[np.float64], count: int, edges: NDArra
         polygon[i, 0] = view.cx + view.fx * polygon[i, 0] / polygon[i, 2]
         polygon[i, 1] = view.cy + view.fy * polygon[i, 1] / polygon[i, 2]
     for i in range(count):
-        p, q = polygon[i], polygon[(i + 1) % count]
-        dx, dy = q[0] - p[0], q[1] - p[1]
-        area += p[0] * q[1] - q[0] * p[1]
+        j = i + 1 if i + 1 < count else 0
+        x, y = polygon[i, 0], polygon[i, 1]
+        dx, dy = polygon[j, 0] - x, polygon[j, 1] - y
+        area += x * dy - y * dx
         length = np.sqrt(dx * dx + dy * dy)
         if length < 1e-6:
-            edges[i] = 0.0  # two corners in one place bound nothing
+            edges[i, 0] = edges[i, 1] = edges[i, 2] = 0.0  # two corners in one place bound nothing
             continue
         edges[i, 0], edges[i, 1] = -dy / length, dx / length
-        edges[i, 2] = (p[0] * dy - p[1] * dx) / length
+        edges[i, 2] = (x * dy - y * dx) / length
     return area > 0.0
 
 
 @njit(cache=True, error_model="numpy")
 def _light(thing: np.record, local: NDArray[np.float64], sunlight: Sunlight, surface: NDArray[np.float64]) -> None:
     """How a face takes light: (in the shade, added by the sun) and its street coordinates at, per u, per v."""
-    size = np.array([thing.length, thing.width, thing.height])
+    size = (thing.length, thing.width, thing.height)
     for axis in range(3):
         surface[1, axis] = local[0, axis] * size[axis]
         surface[2, axis] = (local[1, axis] - local[0, axis]) * size[axis]
         surface[3, axis] = (local[3, axis] - local[0, axis]) * size[axis]
+    surface[0, 0], surface[0, 1] = 0.75, 0.6
     if thing.mesh == BILLBOARD:
-        surface[0, 0], surface[0, 1] = 0.75, 0.6
         surface[2, 0] = thing.width  # as if it lay along the street, to be dappled both ways
     else:
-        normal = np.cross(surface[3], surface[2])
-        normal /= np.sqrt((normal * normal).sum())
-        east = normal[0] * thing.sin + normal[1] * thing.cos
-        north = normal[0] * thing.cos - normal[1] * thing.sin
-        facing = east * sunlight.toward[0] + north * sunlight.toward[1] + normal[2] * sunlight.toward[2]
-        surface[0, 0], surface[0, 1] = 0.75 + 0.25 * normal[2], max(facing, 0.0)
+        along, across, up = cross(surface[3], surface[2])
+        length = np.sqrt(along * along + across * across + up * up)
+        east, north = along * thing.sin + across * thing.cos, along * thing.cos - across * thing.sin
+        facing = east * sunlight.toward[0] + north * sunlight.toward[1] + up * sunlight.toward[2]
+        surface[0, 0], surface[0, 1] = 0.75 + 0.25 * up / length, max(facing / length, 0.0)
     surface[0, 0] *= thing.bright
     surface[0, 1] *= thing.bright * sunlight.direct
-    surface[1:, :2] *= thing.forward
+    for row in range(1, 4):
+        surface[row, 0] *= thing.forward
+        surface[row, 1] *= thing.forward
     surface[1, 0] += thing.station
     surface[1, 1] += thing.lateral
     surface[1, 2] += thing.up

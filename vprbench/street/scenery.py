@@ -13,15 +13,7 @@ from vprbench.street.course import Course, build_course
 from vprbench.street.layout import plan_street
 from vprbench.street.mesh import BILLBOARD, FLAT_HOUSE, GABLED_HOUSE
 from vprbench.street.parameters import Environment
-from vprbench.street.sunlight import (
-    CROWN_HIGH,
-    CROWN_LATERAL,
-    CROWN_LOW,
-    WALL_HEIGHT,
-    WALL_LATERAL,
-    Outline,
-    shade_stations,
-)
+from vprbench.street.sunlight import Outline, shade_stations
 from vprbench.street.things import Thing, Things, place
 from vprbench.street.wardrobe import Wardrobe, paint_wardrobe
 
@@ -64,17 +56,16 @@ def build_scenery(environment: Environment, length: float, seed: int) -> Scenery
 def _outline(course: Course, things: Iterable[Thing]) -> Outline:
     """Distance and height of the houses and of the crowns of trees, all along the street."""
     stations = shade_stations(course)
-    outline = np.zeros((2, len(stations), 5))
-    outline[:, :, WALL_LATERAL] = course.facade_at(stations)
-    outline[:, :, CROWN_LATERAL] = course.half_road_at(stations) + 1.5
+    wall, crown = np.tile(course.facade_at(stations), (2, 1)), np.tile(course.half_road_at(stations) + 1.5, (2, 1))
+    height, low, high = np.zeros_like(wall), np.ones_like(wall), np.zeros_like(wall)
     for thing in things:
-        side = outline[int(thing.lateral > 0)]
+        right = int(thing.lateral > 0)
         if thing.mesh in _WALL_PER_EAVES:
-            side[_span(stations, thing, 0.5 * thing.length), WALL_HEIGHT] = thing.height * _WALL_PER_EAVES[thing.mesh]
+            height[right, _span(stations, thing, 0.5 * thing.length)] = thing.height * _WALL_PER_EAVES[thing.mesh]
         elif thing.mesh == BILLBOARD and thing.width > 2.0:
-            crown = _span(stations, thing, 0.4 * thing.width)
-            side[crown, CROWN_LOW], side[crown, CROWN_HIGH] = thing.height * 0.3, thing.height * 0.95
-    return outline
+            span = _span(stations, thing, 0.4 * thing.width)
+            low[right, span], high[right, span] = thing.height * 0.3, thing.height * 0.95
+    return Outline(wall, crown, height, low, high)
 
 
 def _span(stations: Float64[np.ndarray, " stations"], thing: Thing, reach: float) -> slice:

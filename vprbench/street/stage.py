@@ -6,47 +6,15 @@ from dataclasses import dataclass
 from functools import lru_cache
 
 import numpy as np
-from jaxtyping import Float64
 
-from vprbench.street.course import Course
-from vprbench.street.drive import Drive, Motion, lane, plan_drive
-from vprbench.street.mesh import CAR
+from vprbench.street.cars import Traffic, park_cars, plan_traffic
+from vprbench.street.drive import Drive, Motion, plan_drive
 from vprbench.street.parameters import StreetParameters
 from vprbench.street.scenery import Scenery, build_scenery
-from vprbench.street.sunlight import Sunlight
-from vprbench.street.things import Thing, Things, place, stand
-from vprbench.street.wardrobe import Wardrobe
+from vprbench.street.sunlight import Sunlight, sun_over
+from vprbench.street.things import Things
 
 __all__ = ["Stage", "set_stage"]
-
-_SLOT = 6.0  # metres of kerb for each parked car
-_CLEARANCE = 1.9  # metres from the vehicle's path within which no car is parked
-_METRES_A_CAR = 40.0  # of road for each moving car, where `occluders` is 1
-
-
-@dataclass(frozen=True)
-class Traffic:
-    """Moving cars: some come towards the vehicle, some drive ahead of it for a while.
-
-    Attributes:
-        things: the cars; only their place changes.
-        frame: (n,) at which each is met, or is nearest ahead.
-        nearest: (n,) distance kept ahead, metres; 0 for those that are met.
-        speed: (n,) at which the distance shrinks and grows again, metres a frame.
-    """
-
-    things: Things
-    frame: Float64[np.ndarray, " n"]
-    nearest: Float64[np.ndarray, " n"]
-    speed: Float64[np.ndarray, " n"]
-
-    def at(self, course: Course, station: float, frame: int) -> Things:
-        """The cars while the vehicle is at one frame and station."""
-        things, gap = self.things.copy(), self.speed * (frame - self.frame)
-        things["station"] = station + np.where(self.nearest > 0, self.nearest + np.abs(gap), -gap)
-        things["lateral"] = things["forward"] * lane(course, things["station"])
-        stand(course, things)
-        return things
 
 
 @dataclass(frozen=True)
@@ -79,8 +47,8 @@ def set_stage(parameters: StreetParameters, drive: Drive) -> Stage:
     return Stage(
         scenery=scenery,
         motion=motion,
-        parked=_parked(scenery, parameters, motion, second),
-        traffic=_traffic(scenery, parameters, motion, second),
+        parked=park_cars(scenery, parameters, motion, second=second),
+        traffic=plan_traffic(scenery, parameters, motion, second=second),
         sunlight=_sunlight(scenery, parameters, second),
         sky=scenery.wardrobe.models["sky"][second],
     )
@@ -91,59 +59,4 @@ def _sunlight(scenery: Scenery, parameters: StreetParameters, second: bool) -> S
     turned = np.radians(parameters.sun_shift) if second else 0.0
     azimuth = scenery.course.heading_at(np.zeros(1))[0] + rng.uniform(0.6, 1.2) * rng.choice([-1, 1]) + turned
     elevation = np.radians(rng.uniform(38, 48)) - 0.15 * turned
-    return Sunlight.over(scenery.course, scenery.outline, azimuth, elevation, rng.random((64, 64)))
-
-
-def _parked(scenery: Scenery, parameters: StreetParameters, motion: Motion, second: bool) -> Things:
-    """Parked cars; on the second drive a share of the places by the kerb is filled anew."""
-    cars = _kerbside(scenery, np.random.default_rng([parameters.seed, 6]))
-    if second:
-        rng = np.random.default_rng([parameters.seed, 7])
-        changed = rng.random(len(cars)) < parameters.occluders
-        cars = [new if change else old for old, new, change in zip(cars, _kerbside(scenery, rng), changed, strict=True)]
-    things = place(scenery.course, [car for car in cars if car])
-    path = np.interp(things["station"], motion.stations, motion.laterals)
-    return things[np.abs(things["lateral"] - path) > _CLEARANCE]
-
-
-def _kerbside(scenery: Scenery, rng: np.random.Generator) -> list[Thing | None]:
-    """The car at each place by the kerb, if one stands there."""
-    course = scenery.course
-    cars: list[Thing | None] = []
-    for side in (-1.0, 1.0):
-        for station in np.arange(course.stations[0], course.stations[-1], _SLOT):
-            lateral = side * (float(course.half_road_at(station)) - rng.uniform(0.8, 1.0))
-            car = _car(scenery.wardrobe, rng, station + rng.uniform(-0.6, 0.6), lateral, side)
-            taken = rng.random() < 0.25 + 0.35 * float(course.narrowness_at(station))
-            cars.append(car if taken else None)
-    return cars
-
-
-def _car(wardrobe: Wardrobe, rng: np.random.Generator, station: float, lateral: float, forward: float) -> Thing:
-    van = rng.random() < 0.12
-    return Thing(
-        mesh=CAR,
-        skin=int(rng.choice(wardrobe.models["car"])),
-        station=station,
-        lateral=lateral,
-        length=rng.uniform(4.6, 5.2) if van else rng.uniform(3.7, 4.6),
-        width=rng.uniform(1.65, 1.85),
-        height=rng.uniform(1.8, 2.1) if van else rng.uniform(1.38, 1.55),
-        forward=forward,
-    )
-
-
-def _traffic(scenery: Scenery, parameters: StreetParameters, motion: Motion, second: bool) -> Traffic:
-    """Moving cars; oncoming ones only where the street is wide enough for two."""
-    rng = np.random.default_rng([parameters.seed, 8, second])
-    count = rng.poisson(parameters.occluders * parameters.length / _METRES_A_CAR)
-    frame = rng.uniform(0, len(motion.times), count)
-    met = np.interp(frame, np.arange(len(motion.times)), motion.stations)
-    oncoming = (scenery.course.narrowness_at(met) < 0.5) & (rng.random(count) < 0.7)
-    cars = [_car(scenery.wardrobe, rng, 0.0, 0.0, forward) for forward in np.where(oncoming, -1.0, 1.0)]
-    return Traffic(
-        things=place(scenery.course, cars),
-        frame=frame,
-        nearest=np.where(oncoming, 0.0, rng.uniform(9.0, 25.0, count)),
-        speed=np.where(oncoming, rng.uniform(1.6, 2.6, count), rng.uniform(0.2, 0.8, count)),
-    )
+    return sun_over(scenery.course, scenery.outline, azimuth, elevation, rng.random((64, 64)))

@@ -6,6 +6,7 @@ its side of the road at some station and height, and the row's outline there say
 
 from __future__ import annotations
 
+from dataclasses import dataclass
 from typing import NamedTuple
 
 import numpy as np
@@ -15,25 +16,15 @@ from numpy.typing import NDArray
 
 from vprbench.street.course import BEHIND, Course
 
-__all__ = [
-    "CROWN_HIGH",
-    "CROWN_LATERAL",
-    "CROWN_LOW",
-    "WALL_HEIGHT",
-    "WALL_LATERAL",
-    "Outline",
-    "Sunlight",
-    "lit",
-    "shade_stations",
-]
-
-# What stands along the street: (side, station, quantity), side 0 left and 1 right, all in metres.
-Outline = Float64[np.ndarray, "2 stations 5"]
-WALL_LATERAL, WALL_HEIGHT, CROWN_LATERAL, CROWN_LOW, CROWN_HIGH = range(5)
+__all__ = ["Outline", "Sunlight", "lit", "shade_stations", "sun_over"]
 
 _STEP = 0.125  # metres of street between the samples of an outline
 _PENUMBRA = 0.25  # metres over which a shadow's edge fades
 _LEAVES = 3.0  # clumps of leaves to a metre
+_DIRECT = 2.2  # sunlight on a surface that faces the sun; in the shade it is about 1
+
+# Left side and right side of the street at every shade station.
+Sides = Float64[np.ndarray, "2 stations"]
 
 
 def shade_stations(course: Course) -> Float64[np.ndarray, " stations"]:
@@ -41,69 +32,86 @@ def shade_stations(course: Course) -> Float64[np.ndarray, " stations"]:
     return np.arange(-BEHIND, course.stations[-1], _STEP)
 
 
+@dataclass(frozen=True)
+class Outline:
+    """What stands in the sun's way along the street, all in metres.
+
+    Attributes:
+        wall, crown: distance of the houses, and of the trees, from the middle of the road.
+        height: of the houses, 0 between them.
+        low, high: lower and upper end of the crowns; between them low is 1 and high is 0, so that nothing
+            lies within.
+    """
+
+    wall: Sides
+    crown: Sides
+    height: Sides
+    low: Sides
+    high: Sides
+
+
 class Sunlight(NamedTuple):
-    """The sun over one drive.
+    """The sun over one drive, as the painter reads it.
 
     Attributes:
         toward: unit vector to the sun (east, north, up).
         direct: brightness of a surface that faces the sun, of one in the shade 1.
-        along, rise: (stations,) metres along the street and upwards on the ray to the sun, per metre
-            across the street.
-        side: (stations,) -1 where the sun is to the left of the street, +1 to the right.
-        outline: what casts the shadows.
+        rays: of every shade station, the sun's side of the street (-1 left, +1 right), the metres along the
+            street and upwards on the ray to the sun per metre across it, and the distance of the houses and
+            of the trees on that side.
+        casters: of every shade station, the height of the houses and the lower and upper end of the crowns
+            on the sun's side.
         leaves: (64, 64) random numbers 0..1, for the gaps in the crowns.
     """
 
     toward: Float64[np.ndarray, "3"]
     direct: float
-    along: Float64[np.ndarray, " stations"]
-    rise: Float64[np.ndarray, " stations"]
-    side: Float64[np.ndarray, " stations"]
-    outline: Outline
+    rays: Float64[np.ndarray, "stations 5"]
+    casters: Float64[np.ndarray, "stations 3"]
     leaves: Float64[np.ndarray, "64 64"]
 
-    @classmethod
-    def over(
-        cls, course: Course, outline: Outline, azimuth: float, elevation: float, leaves: Float64[np.ndarray, "64 64"]
-    ) -> Sunlight:
-        """The sun at an azimuth (clockwise from north) and elevation, radians."""
-        relative = azimuth - course.heading_at(shade_stations(course))
-        across = np.sin(relative)
-        per_metre = 1.0 / np.maximum(np.abs(across), 0.1)
-        flat = np.cos(elevation)
-        return cls(
-            toward=np.array([np.sin(azimuth) * flat, np.cos(azimuth) * flat, np.sin(elevation)]),
-            direct=2.2,
-            along=np.cos(relative) * per_metre,
-            rise=np.tan(elevation) * per_metre,
-            side=np.where(across < 0, -1.0, 1.0),
-            outline=outline,
-            leaves=leaves,
-        )
+
+def sun_over(
+    course: Course, outline: Outline, azimuth: float, elevation: float, leaves: Float64[np.ndarray, "64 64"]
+) -> Sunlight:
+    """The sun at an azimuth (clockwise from north) and elevation, radians."""
+    relative = azimuth - course.heading_at(shade_stations(course))
+    across, flat = np.sin(relative), np.cos(elevation)
+    # Where the sun stands along the street, no shadow falls across it for very long.
+    per_metre = 1.0 / np.maximum(np.abs(across), 0.1)
+    right, every = (across >= 0).astype(np.int64), np.arange(len(across))
+    wall, crown, *casters = (
+        sides[right, every] for sides in (outline.wall, outline.crown, outline.height, outline.low, outline.high)
+    )
+    along, rise = np.cos(relative) * per_metre, np.tan(elevation) * per_metre
+    return Sunlight(
+        toward=np.array([np.sin(azimuth) * flat, np.cos(azimuth) * flat, np.sin(elevation)]),
+        direct=_DIRECT,
+        rays=np.stack([2.0 * right - 1.0, along, rise, wall, crown], axis=1),
+        casters=np.stack(casters, axis=1),
+        leaves=leaves,
+    )
 
 
 @njit(cache=True, error_model="numpy", inline="always")
 def lit(sunlight: Sunlight, station: float, lateral: float, height: float) -> float:
     """Share of the sun's light, 0..1, that reaches a point given in street coordinates, metres."""
-    light = 1.0
-    last = sunlight.along.size - 1
+    rays, casters = sunlight.rays, sunlight.casters
+    last = rays.shape[0] - 1
     here = min(max(int((station + BEHIND) / _STEP), 0), last)
-    side, along, rise = sunlight.side[here], sunlight.along[here], sunlight.rise[here]
-    row = 1 if side > 0 else 0
-    across = sunlight.outline[row, here, WALL_LATERAL] - side * lateral
+    along, rise, toward_sun = rays[here, 1], rays[here, 2], rays[here, 0] * lateral
+    light = 1.0
+    across = rays[here, 3] - toward_sun
     if across > 0.2:
         there = min(max(int((station + across * along + BEHIND) / _STEP), 0), last)
-        wall = sunlight.outline[row, there, WALL_HEIGHT]
-        light = min(max((height + across * rise - wall) / _PENUMBRA + 0.5, 0.0), 1.0)
-    across = sunlight.outline[row, here, CROWN_LATERAL] - side * lateral
+        light = min(max((height + across * rise - casters[there, 0]) / _PENUMBRA + 0.5, 0.0), 1.0)
+    across = rays[here, 4] - toward_sun
     if across > 0.0 and light > 0.0:
-        at = station + across * along
+        at, up = station + across * along, height + across * rise
         there = min(max(int((at + BEHIND) / _STEP), 0), last)
-        up = height + across * rise
-        low, high = sunlight.outline[row, there, CROWN_LOW], sunlight.outline[row, there, CROWN_HIGH]
-        inside = min(max(min(up - low, high - up) * 1.5 + 0.5, 0.0), 1.0)
+        inside = min(up - casters[there, 1], casters[there, 2] - up) * 1.5 + 0.5
         if inside > 0.0:
-            light *= 1.0 - inside * _leafage(sunlight.leaves, at * _LEAVES, up * _LEAVES)
+            light *= 1.0 - min(inside, 1.0) * _leafage(sunlight.leaves, at * _LEAVES, up * _LEAVES)
     return light
 
 
