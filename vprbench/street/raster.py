@@ -8,7 +8,7 @@ from numpy.typing import NDArray
 
 from vprbench.street.canvas import Canvas, View
 from vprbench.street.fill import cross, fill
-from vprbench.street.mesh import BILLBOARD, Meshes
+from vprbench.street.mesh import BILLBOARD, CAR, Meshes
 from vprbench.street.sunlight import Sunlight
 from vprbench.street.texture import Skins
 from vprbench.street.things import Things
@@ -19,14 +19,18 @@ _NEAR = 0.4  # metres: nothing nearer to the camera is drawn
 
 
 def nearest_first(view: View, things: Things) -> Things:
-    """The things ahead of the camera, sorted by their farthest point (which suits walls seen at a slant)."""
+    """The things ahead of the camera, in the order in which they hide each other.
+
+    What lines the street, seen at a slant, goes by its farthest point: all that stands before it is nearer.
+    Cars go by their nearest: all that stands beside them, off the road, is behind.
+    """
     east, north = things["east"] - view.east, things["north"] - view.north
     along = np.abs(things["sin"] * view.sin + things["cos"] * view.cos) * things["length"] / 2
     across = np.abs(things["cos"] * view.sin - things["sin"] * view.cos) * things["width"]
     reach = np.where(things["mesh"] == BILLBOARD, 0.0, along + across)
-    depth = east * view.sin + north * view.cos + reach
-    order = np.argsort(depth, kind="stable")
-    return things[order[depth[order] > _NEAR]]
+    centre = east * view.sin + north * view.cos
+    order = np.argsort(centre + np.where(things["mesh"] == CAR, -reach, reach), kind="stable")
+    return things[order[(centre + reach)[order] > _NEAR]]
 
 
 @njit(cache=True, error_model="numpy")

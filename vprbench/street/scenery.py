@@ -42,7 +42,7 @@ class Scenery:
     ground: Float64[np.ndarray, "stations 5"]
 
 
-@lru_cache(maxsize=4)
+@lru_cache(maxsize=3)
 def build_scenery(environment: Environment, length: float, seed: int) -> Scenery:
     """One street; the same arguments always give the same one."""
     course = build_course(environment, length, seed)

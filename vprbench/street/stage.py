@@ -38,7 +38,7 @@ class Stage:
     sky: int
 
 
-@lru_cache(maxsize=8)
+@lru_cache(maxsize=6)
 def set_stage(parameters: StreetParameters, drive: Drive) -> Stage:
     """The stage of one drive; the same arguments always give the same one."""
     scenery = build_scenery(parameters.environment, parameters.length, parameters.seed)

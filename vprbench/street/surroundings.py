@@ -93,6 +93,6 @@ def paint_sky_round(rng: np.random.Generator) -> Image:
     clouds[:, :256] = clouds[:, :256] * np.linspace(0, 1, 256) + clouds[:, -1:] * np.linspace(1, 0, 256)
     height = np.linspace(1.0, 0.0, 128, dtype=np.float32)[:, None]
     sky = 0.8 - 0.35 * height + 0.12 * np.clip(clouds, -1, 2)
-    skyline = 0.04 + 0.015 * cv2.resize(rng.standard_normal((1, 128), np.float32), (1024, 1))
+    skyline = 0.04 + 0.015 * fractal(rng, 1, 1024, 64)
     sky = np.where(height < skyline, 0.05, sky)
     return opaque(sky.astype(np.float32))

@@ -128,6 +128,15 @@ def test_what_is_nearer_hides_what_is_behind(straight: Course, open_sky: Sunligh
     assert middle == pytest.approx(0.2 * (0.75 + 0.6 * open_sky.direct), abs=0.01)
 
 
+@pytest.mark.parametrize(("mesh", "first"), [(CAR, "solid"), (FLAT_HOUSE, "post")])
+def test_a_car_hides_the_post_beside_it_and_a_house_does_not(straight: Course, mesh: int, first: str) -> None:
+    solid = Thing(mesh, 0, 12.0, 3.0, length=4.0, width=1.8, height=1.5)
+    post = Thing(BILLBOARD, 0, 13.0, 3.0 + (1.5 if mesh == CAR else -0.5), width=0.2, height=3.0)
+    for things in ((solid, post), (post, solid)):
+        nearest = nearest_first(view(), place(straight, things))[0]
+        assert nearest["mesh"] == (mesh if first == "solid" else BILLBOARD)
+
+
 def test_what_is_behind_the_camera_is_not_seen(painter: Painter) -> None:
     assert painter(view(north=30.0), Thing(BOX, 0, 20.0, 1.0, 4.0, 2.0, 2.0)).clear.min() == 1.0
 
