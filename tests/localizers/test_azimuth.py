@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
+
 from vprbench_localizers.azimuth import agreeing_pairs, azimuths
 
 CAMERA = np.array([372.0, 314.0])
