@@ -1,0 +1,168 @@
+"""One topological sparse layer with its pooling: S1 with C1, or S2 with C2.
+
+Its dictionary is learned first; then a self-organising map is ordered with the atoms as samples, and the map's units,
+scaled to unit length, are the dictionary that codes from then on. So units that touch code alike features, and a
+maximum over them changes little when the signal shifts a little.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+from functools import cached_property
+from time import perf_counter
+from typing import NamedTuple
+
+import numpy as np
+from jaxtyping import Float32, Int64
+
+from vprbench_encoders.homeostasis import usage_entropy
+from vprbench_encoders.matching_pursuit import Selection, SparseCode, by_correlation, pursue, reconstruction_rate
+from vprbench_encoders.pooling import max_pool, pooling_cells
+from vprbench_encoders.som import KohonenMap
+from vprbench_encoders.sparse_hebbian import SparseHebbian, unit_length
+
+__all__ = ["LayerRecipe", "LayerReport", "Rates", "TopologicalLayer"]
+
+# Signals coded at a time: their correlations with 900 units take 3.5 MiB.
+_CHUNK = 1024
+
+# Signals of which a report takes its rates.
+_REPORTED = 2048
+
+
+class Rates(NamedTuple):
+    """Mean reconstruction rate 1 - |I - Phi a|^2 / |I|^2 of patches learned from, and of patches held out."""
+
+    training: float
+    held_out: float
+
+
+@dataclass(frozen=True)
+class LayerReport:
+    """What a layer has learned.
+
+    Attributes:
+        atoms: rates of the dictionary as it was learned.
+        units: rates of the map's units, which code from then on.
+        entropy: how evenly the units are used by training patches, 0..1.
+        seconds: that learning and ordering took.
+    """
+
+    atoms: Rates
+    units: Rates
+    entropy: float
+    seconds: float
+
+
+@dataclass(frozen=True)
+class TopologicalLayer:
+    """A learned layer.
+
+    Attributes:
+        units: (units, size), the map's units of unit length, row after row of the map.
+        mean: (size,), subtracted from what is coded.
+        selection: how the units compete.
+        cells: (units,), the pooled cell of each unit, -1 for none.
+        picks: N0.
+        rectified: whether coefficients are positive.
+    """
+
+    units: Float32[np.ndarray, "units size"]
+    mean: Float32[np.ndarray, " size"]
+    selection: Selection
+    cells: Int64[np.ndarray, " units"]
+    picks: int
+    rectified: bool
+
+    @cached_property
+    def _columns(self) -> Float32[np.ndarray, "units size"]:
+        """The units in column order, in which a few signals are correlated with them in two thirds of the time."""
+        return np.asfortranarray(self.units)
+
+    @cached_property
+    def _gram(self) -> Float32[np.ndarray, "units units"]:
+        return self.units @ self.units.T
+
+    def code(self, signals: Float32[np.ndarray, "samples size"]) -> SparseCode:
+        """The sparse codes of signals that are `prepared`."""
+        return pursue(signals, self._columns, self._gram, self.picks, self.selection, self.rectified)
+
+    def pooled(self, inputs: Float32[np.ndarray, "samples size"]) -> Float32[np.ndarray, "samples cells"]:
+        """The layer's answer to its inputs: their codes, pooled."""
+        chunks = [inputs[first : first + _CHUNK] for first in range(0, max(len(inputs), 1), _CHUNK)]
+        return np.concatenate([max_pool(self.code(prepared(chunk, self.mean)), self.cells) for chunk in chunks])
+
+
+@dataclass(frozen=True, kw_only=True)
+class LayerRecipe:
+    """How a layer is learned.
+
+    Attributes:
+        learning: of the dictionary.
+        atoms: of the dictionary.
+        side: of the map.
+        ordering: of the map; None: the atoms themselves are the units, in the order of their learning.
+        pool: rows and columns of a pooling window; 1: no pooling.
+        centred: whether the mean of the training inputs is subtracted.
+        equalised: whether homeostasis goes on when the layer is used, followed anew on its units.
+    """
+
+    learning: SparseHebbian
+    atoms: int
+    side: int
+    ordering: KohonenMap | None
+    pool: int
+    centred: bool
+    equalised: bool
+
+    def learn(
+        self,
+        inputs: Float32[np.ndarray, "samples size"],
+        held_out: Float32[np.ndarray, "others size"],
+        random: np.random.Generator,
+    ) -> tuple[TopologicalLayer, LayerReport]:
+        """The layer that these inputs teach, and what it has learned, also measured on inputs held out."""
+        start = perf_counter()
+        mean = inputs.mean(axis=0) if self.centred else np.zeros(inputs.shape[1], np.float32)
+        signals = prepared(inputs, mean)
+        atoms = self.learning.learn(signals, self.atoms, random)
+        units = unit_length(self.ordering.order(atoms, self.side, random)) if self.ordering else atoms
+        layer = TopologicalLayer(
+            units=units,
+            mean=mean,
+            selection=by_correlation(len(units)),
+            cells=pooling_cells(self.side, self.pool),
+            picks=self.learning.picks,
+            rectified=self.learning.rectified,
+        )
+        if self.equalised:
+            layer = replace(layer, selection=self.learning.equalise(signals, units, random))
+        seconds = perf_counter() - start
+        return layer, _report(layer, atoms, signals, prepared(held_out, mean), seconds)
+
+
+def prepared(
+    inputs: Float32[np.ndarray, "samples size"], mean: Float32[np.ndarray, " size"]
+) -> Float32[np.ndarray, "samples size"]:
+    """The inputs as signals to code: less the mean, scaled to a mean square of 1; without contrast, zero."""
+    signals = inputs - mean
+    length = np.sqrt(np.einsum("ij,ij->i", signals, signals))
+    signals *= (np.sqrt(inputs.shape[1]) / np.where(length > 0, length, np.inf)).astype(np.float32)[:, None]
+    return signals
+
+
+def _report(
+    layer: TopologicalLayer,
+    atoms: Float32[np.ndarray, "atoms size"],
+    signals: Float32[np.ndarray, "samples size"],
+    held_out: Float32[np.ndarray, "others size"],
+    seconds: float,
+) -> LayerReport:
+    learned = replace(layer, units=atoms, selection=by_correlation(len(atoms)))
+    both = [kept[:: max(len(kept) // _REPORTED, 1)] for kept in (signals, held_out)]
+    of_atoms, of_units = (Rates(*(_rate(stage, kept) for kept in both)) for stage in (learned, layer))
+    return LayerReport(of_atoms, of_units, usage_entropy(layer.code(both[0]), len(layer.units)), seconds)
+
+
+def _rate(layer: TopologicalLayer, signals: Float32[np.ndarray, "samples size"]) -> float:
+    return reconstruction_rate(signals, layer.units, layer.code(signals))
