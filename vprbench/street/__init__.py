@@ -14,15 +14,14 @@ from vprbench.street.course import build_course
 from vprbench.street.drive import Drive, plan_drive
 from vprbench.street.frames import StreetFrames
 from vprbench.street.kitti_tree import draw_kitti, draw_kitti_raw
-from vprbench.street.parameters import STREETS, Environment, StreetParameters
+from vprbench.street.parameters import Environment, StreetParameters
 
-__all__ = ["STREETS", "Environment", "StreetParameters", "draw_kitti", "draw_kitti_raw", "street_route"]
+__all__ = ["Environment", "StreetParameters", "draw_kitti", "draw_kitti_raw", "street_route"]
 
 # Part of every checksum: to be counted up whenever the same parameters draw other pictures.
 _EDITION = 1
 _TRAINING_LENGTH = 100.0
 _SEEDS = 2**31  # a training street lies half of all seeds away, where nobody looks for one to evaluate
-_ENVIRONMENTS = {"wide": "large roads", "narrow": "narrow streets", "mixed": "mixed"}
 
 
 def street_route(parameters: StreetParameters, *, name: str) -> Route:
@@ -39,7 +38,7 @@ def street_route(parameters: StreetParameters, *, name: str) -> Route:
         learn=_traverse(first, "learn", f"{name}, learn"),
         test=_traverse(parameters, "test", f"{name}, test"),
         training=(_traverse(elsewhere, "learn", f"{name}, training"),),
-        environment=_ENVIRONMENTS[parameters.environment],
+        environment=parameters.environment,
     )
 
 

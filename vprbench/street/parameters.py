@@ -10,7 +10,7 @@ from typing import Literal, get_args
 
 from vprbench.errors import ConfigError, nearest
 
-__all__ = ["STREETS", "Environment", "StreetParameters"]
+__all__ = ["Environment", "StreetParameters"]
 
 Environment = Literal["wide", "narrow", "mixed"]
 
@@ -74,13 +74,3 @@ class StreetParameters:
 
     def __str__(self) -> str:
         return ", ".join(f"{key}={value}" for key, value in asdict(self).items())
-
-
-# The paper's environments, at the lengths of its routes K5-1, K5-2 and K0-1.
-STREETS: Mapping[str, StreetParameters] = MappingProxyType(
-    {
-        "Street-Wide": StreetParameters("wide", 96.0),
-        "Street-Narrow": StreetParameters("narrow", 199.0),
-        "Street-Mixed": StreetParameters("mixed", 378.0),
-    }
-)

@@ -9,8 +9,10 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
+from vprbench.catalogue import catalogue
+from vprbench.entries.street import StreetEntry
 from vprbench.errors import ConfigError
-from vprbench.street import STREETS, StreetParameters
+from vprbench.street import StreetParameters
 
 NUMBERS = [field.name for field in fields(StreetParameters) if field.name != "environment"]
 
@@ -44,8 +46,9 @@ def test_a_seed_is_a_whole_number() -> None:
 
 
 def test_the_named_streets_have_the_lengths_of_the_papers_routes() -> None:
-    assert {name: (p.environment, p.length) for name, p in STREETS.items()} == {
-        "Street-Wide": ("wide", 96.0),
-        "Street-Narrow": ("narrow", 199.0),
-        "Street-Mixed": ("mixed", 378.0),
+    named = {name: entry for name, entry in catalogue().entries.items() if isinstance(entry, StreetEntry)}
+    assert {name: entry.parameters for name, entry in named.items()} == {
+        "Street-Wide": StreetParameters("wide", 96.0),
+        "Street-Narrow": StreetParameters("narrow", 199.0),
+        "Street-Mixed": StreetParameters("mixed", 378.0),
     }

@@ -15,7 +15,7 @@ import pytest
 
 from vprbench.geodesy import local_positions
 from vprbench.route import Route, Traverse
-from vprbench.street import STREETS, StreetParameters, street_route
+from vprbench.street import Environment, StreetParameters, street_route
 from vprbench.types import Frame
 
 PARAMETERS = StreetParameters("mixed", 60.0, seed=3)
@@ -73,10 +73,13 @@ def test_a_frame_is_the_callers_own(route: Route) -> None:
     assert digest(route.learn.frames[4]) == before
 
 
-@pytest.mark.parametrize("name", STREETS)
-def test_drives_have_the_length_of_their_street(name: str) -> None:
-    parameters = STREETS[name]
-    drawn = street_route(parameters, name=name)
+LENGTHS: dict[Environment, float] = {"wide": 96.0, "narrow": 199.0, "mixed": 378.0}
+
+
+@pytest.mark.parametrize("environment", LENGTHS)
+def test_drives_have_the_length_of_their_street(environment: Environment) -> None:
+    parameters = StreetParameters(environment, LENGTHS[environment])
+    drawn = street_route(parameters, name=environment)
     for traverse, step in ((drawn.learn, parameters.learn_step), (drawn.test, parameters.test_step)):
         # Wandering in the lane and keeping to one side of a bend change it a little.
         assert traverse.length == pytest.approx(parameters.length, rel=0.03)
@@ -143,7 +146,7 @@ def recognised(learn: Traverse, test: Traverse) -> float:
 
 
 def test_the_street_is_neither_trivial_nor_hopeless_and_harder_farther_aside() -> None:
-    parameters = STREETS["Street-Wide"]
+    parameters = StreetParameters("wide", 96.0)
     shares = []
     for offset in (parameters.lateral_offset, 3.0):
         drawn = street_route(replace(parameters, lateral_offset=offset), name="aside")
