@@ -6,7 +6,7 @@ figure "Diagram of HSD operation"). HSD-n has n x n atoms on an n x n map, HSD-n
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import KW_ONLY, dataclass, field, fields
 from functools import partial
 from pathlib import Path
@@ -21,9 +21,12 @@ from vprbench_encoders import hsd_store
 from vprbench_encoders.code_match import Similarity, match_all, match_pairs
 from vprbench_encoders.focus import FocusDetector
 from vprbench_encoders.homeostasis import Kind
+from vprbench_encoders.hsd_store import Learned
 from vprbench_encoders.layers import LayerRecipe, LayerReport, TopologicalLayer
 from vprbench_encoders.local_views import LocalViews, ViewSampling
+from vprbench_encoders.matching_pursuit import Selection
 from vprbench_encoders.patches import LocalView
+from vprbench_encoders.pooling import pooled_side
 from vprbench_encoders.som import KohonenMap
 from vprbench_encoders.sparse_hebbian import Rule, SparseHebbian
 from vprbench_encoders.whitening import CUTOFF
@@ -176,7 +179,8 @@ class HSD:
         if not self.layers:
             raise PhaseError("hsd: there is nothing to save yet: call fit(frames) first")
         options = {option.name: getattr(self, option.name) for option in fields(self) if option.init}
-        hsd_store.write(Path(path), hsd_store.Stored(options, self.layers, self.reports))
+        learned = tuple(Learned(layer.units, layer.mean, *layer.selection) for layer in self.layers)
+        hsd_store.write(Path(path), hsd_store.Stored(options, learned, self.reports))
 
     @classmethod
     def load(cls, path: Path | str) -> HSD:
@@ -192,10 +196,21 @@ class HSD:
         }
         try:
             encoder = cls(**options)
-        except (ConfigError, TypeError) as error:
-            raise DataError(f"{path}: its options are none of this version's: {error}") from error
-        encoder.layers, encoder.reports = stored.layers, stored.reports
+            encoder.layers = tuple(encoder._restored(stored.layers))
+        except (ConfigError, TypeError, ValueError) as error:
+            raise DataError(f"{path}: does not hold what its options say, or they are not this version's") from error
+        encoder.reports = stored.reports
         return encoder
+
+    def _restored(self, layers: Sequence[Learned]) -> Iterator[TopologicalLayer]:
+        """The layers that learned this; ValueError where it does not fit the options."""
+        size = self._views.view.size
+        for recipe, learned in zip(self._recipes, layers, strict=True):
+            if learned.units.shape != (recipe.side**2, size):
+                raise ValueError(learned.units.shape)
+            layer = recipe.layer(learned.units, learned.mean, Selection(learned.gain, learned.tables))
+            size = pooled_side(recipe.side, recipe.pool) ** 2
+            yield layer
 
     def _check(self) -> None:
         side = self.map_size or self.size

@@ -127,18 +127,17 @@ class LayerRecipe:
         signals = prepared(inputs, mean)
         atoms = self.learning.learn(signals, self.atoms, random)
         units = unit_length(self.ordering.order(atoms, self.side, random)) if self.ordering else atoms
-        layer = TopologicalLayer(
-            units=units,
-            mean=mean,
-            selection=by_correlation(len(units)),
-            cells=pooling_cells(self.side, self.pool),
-            picks=self.learning.picks,
-            rectified=self.learning.rectified,
-        )
-        if self.equalised:
-            layer = replace(layer, selection=self.learning.equalise(signals, units, random))
+        selection = self.learning.equalise(signals, units, random) if self.equalised else by_correlation(len(units))
+        layer = self.layer(units, mean, selection)
         seconds = perf_counter() - start
         return layer, _report(layer, atoms, signals, prepared(held_out, mean), seconds)
+
+    def layer(
+        self, units: Float32[np.ndarray, "units size"], mean: Float32[np.ndarray, " size"], selection: Selection
+    ) -> TopologicalLayer:
+        """The layer, given what is learned of it."""
+        cells = pooling_cells(self.side, self.pool)
+        return TopologicalLayer(units, mean, selection, cells, self.learning.picks, self.learning.rectified)
 
 
 def prepared(
