@@ -53,7 +53,7 @@ def local_entropy(image: UInt8[np.ndarray, "height width"], radius: int = 5) -> 
 
 @njit(cache=True)
 def _slide(image: NDArray[np.uint8], reach: NDArray[np.int64], bits: NDArray[np.float64]) -> NDArray[np.float64]:
-    """Slide the disk along each row; pixels enter its histogram on the right and leave it on the left."""
+    """Slide the disk along each row; pixels leave its histogram on the left and enter it on the right."""
     height, width = image.shape
     radius = len(reach) // 2
     entropy = np.empty((height, width))
@@ -63,18 +63,19 @@ def _slide(image: NDArray[np.uint8], reach: NDArray[np.int64], bits: NDArray[np.
         pixels, total = 0, 0.0
         for x in range(-radius, width):
             for row in range(first, end):
-                entering = x + reach[row - y + radius]
                 leaving = x - reach[row - y + radius] - 1
-                if 0 <= entering < width:
-                    grey = image[row, entering]
-                    total += bits[count[grey] + 1] - bits[count[grey]]
-                    count[grey] += 1
-                    pixels += 1
+                entering = x + reach[row - y + radius]
+                # Leaving comes first: no count is ever above the disk's area, where `bits` ends.
                 if leaving >= 0:
                     grey = image[row, leaving]
                     total += bits[count[grey] - 1] - bits[count[grey]]
                     count[grey] -= 1
                     pixels -= 1
+                if 0 <= entering < width:
+                    grey = image[row, entering]
+                    total += bits[count[grey] + 1] - bits[count[grey]]
+                    count[grey] += 1
+                    pixels += 1
             if x >= 0:
                 entropy[y, x] = (bits[pixels] - total) / pixels
     return entropy

@@ -12,7 +12,7 @@ from skimage.filters import rank
 from skimage.morphology import disk
 
 from vprbench.checks.samples import textured_frame
-from vprbench_localizers.entropy import local_entropy, region_entropy
+from vprbench_localizers.entropy import _slide, local_entropy, region_entropy
 
 
 def plain_entropy(image: NDArray[np.uint8], radius: int = 5) -> NDArray[np.float64]:
@@ -63,3 +63,10 @@ def test_a_region_has_the_mean_of_the_enlarged_map() -> None:
 @pytest.mark.parametrize("grey", [0, 128, 255])
 def test_a_uniform_image_has_no_entropy(grey: int) -> None:
     assert (region_entropy(np.full((512, 512), grey, np.uint8)) == 0).all()
+
+
+def test_a_disk_of_one_grey_reads_no_further_than_its_own_area() -> None:
+    """The 5 pixels of a disk of radius 1; whatever lies behind the table in memory is no number."""
+    counts = np.arange(1.0, 6.0)
+    behind = np.concatenate([[0.0], counts * np.log2(counts), np.full(8, np.nan)])
+    assert (_slide(np.zeros((5, 9), np.uint8), np.array([0, 1, 0]), behind[:6]) == 0).all()
