@@ -23,7 +23,8 @@ def check_command(name: str, encoder: str | None) -> int:
             else f"[green]ok[/green]      {result.name}"
         )
         console.print(mark, highlight=False)
-    console.print(f"{name}: {failed} checks failed" if failed else f"{name}: every check passed", highlight=False)
+    verdict = f"{failed} checks failed" if failed else "every check passed"
+    console.print(f"{escape(name)}: {verdict}", highlight=False)
     return 1 if failed else 0
 
 

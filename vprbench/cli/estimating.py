@@ -26,10 +26,10 @@ def print_estimate(todo: Sequence[Job], settings: Settings, console: Console) ->
         try:
             cost = estimate(job, settings)
         except VprbenchError as error:
-            table.add_row(str(job), str(len(job.cells)), "", "", f"[red]{escape(str(error))}[/red]")
+            table.add_row(escape(str(job)), str(len(job.cells)), "", "", f"[red]{escape(str(error))}[/red]")
             continue
         total, longest = total + cost.seconds, max(longest, cost.seconds)
-        table.add_row(str(job), str(len(job.cells)), f"{cost.frames}", f"{cost.pairs}", f"{cost.seconds:.0f}")
+        table.add_row(escape(str(job)), str(len(job.cells)), f"{cost.frames}", f"{cost.pairs}", f"{cost.seconds:.0f}")
     console.print(table)
     elapsed = max(longest, total / settings.workers)
     console.print(f"about {elapsed:.0f} s with {settings.workers} workers, each on a core of its own", highlight=False)

@@ -49,7 +49,7 @@ def _routes(data: Path | None, own: Path | None) -> Table:
             state = f"[green]all {there.present} frames[/green]"
         else:
             state = f"[yellow]{there.present} of {there.present + there.missing} frames[/yellow]"
-        table.add_row(name, entry.split, entry.environment, state)
+        table.add_row(escape(name), escape(entry.split), escape(entry.environment), state)
     return table
 
 
@@ -58,7 +58,7 @@ def _plugins(kind: Kind) -> Table:
     table = _table(f"{kind}s", "name", "distribution", "from", "state")
     for plugin in plugins(kind).values():
         state = "[red]does not load[/red]" if plugin.fault() else "[green]ok[/green]"
-        table.add_row(plugin.name, plugin.origin, plugin.value, state)
+        table.add_row(escape(plugin.name), escape(plugin.origin), escape(plugin.value), state)
     return table
 
 
@@ -74,13 +74,13 @@ def _sweeps() -> Table:
     table = _table("sweeps", "name", "cells", "asks")
     for name, path in builtin_sweeps().items():
         sweep = parse_sweep(path)
-        table.add_row(name, str(len(list(sweep.cells()))), sweep.description)
+        table.add_row(escape(name), str(len(list(sweep.cells()))), escape(sweep.description))
     return table
 
 
 def _table(title: str, *columns: str) -> Table:
     """An empty list."""
-    table = Table(title=title, title_justify="left", title_style="bold", box=None, pad_edge=False)
+    table = Table(title=escape(title), title_justify="left", title_style="bold", box=None, pad_edge=False)
     for column in columns:
         table.add_column(column)
     return table

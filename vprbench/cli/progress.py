@@ -26,7 +26,7 @@ class SweepProgress:
         self.jobs = jobs
         self.console = console
         self._bars = Progress(
-            TextColumn("{task.description}", justify="left"),
+            TextColumn("{task.description}", justify="left", markup=False),
             BarColumn(bar_width=28),
             TextColumn("{task.percentage:>3.0f} %"),
             TimeElapsedColumn(),
@@ -74,11 +74,11 @@ class SweepProgress:
         """A finished cell in one line; an error that many cells share is told once."""
         row = outcome.row
         if row["status"] != "ok":
-            told = row["error"] in self._told
+            error = "the same" if row["error"] in self._told else row["error"]
             self._told.add(row["error"])
-            return f"[red]{outcome.cell.id}  failed: {'the same' if told else escape(row['error'])}[/red]"
+            return f"[red]{escape(f'{outcome.cell.id}  failed: {error}')}[/red]"
         scores = f"AUC {row['auc']:.3f}, over all queries {row['auc_all']:.3f}, top-1 {row['accuracy']:.3f}"
-        return f"{outcome.cell.id}  {row['places']} places, {scores}"
+        return f"{escape(outcome.cell.id)}  {row['places']} places, {scores}"
 
     def _advance(self, number: int, fraction: float, description: str) -> None:
         """Move a job's bar and the whole one; neither ever goes back."""
