@@ -106,9 +106,9 @@ def list_(
 def score(
     results: Annotated[Path, typer.Argument(help="The .csv of a sweep, or one trace (.parquet).")],
 ) -> None:
-    """Compute the metrics again from the stored answers, and compare them with the table.
+    """Compute the metrics and their intervals again from the stored answers, and compare them with the table.
 
-    Exit code 1 where they differ.
+    Exit code 1 where they differ, or where a stored answer is missing.
     """
     from vprbench.cli.reading import score_command
 

@@ -2,15 +2,18 @@
 
 from __future__ import annotations
 
-from collections.abc import Hashable
+from collections.abc import Hashable, Mapping
 from pathlib import Path
-from typing import Any
 
 import numpy as np
+import pyarrow as pa
+import pyarrow.parquet as pq
 from rich.console import Console
+from rich.markup import escape
 
-from vprbench.errors import ConfigError, nearest
-from vprbench.metrics import METRICS, evaluate
+from vprbench.bootstrap import intervals
+from vprbench.errors import ConfigError, DataError, nearest
+from vprbench.metrics import evaluate
 from vprbench.results import ResultTable, read_table
 from vprbench.tables import make_table, to_csv, to_latex, to_markdown, to_terminal
 from vprbench.trace import Trace
@@ -30,29 +33,56 @@ def table_command(results: Path, rows: str, columns: str, metric: str, format: s
     table = make_table(read_table(results), rows=rows, columns=columns, metric=metric)
     console = Console()
     if format == "terminal":
-        console.print(to_terminal(table))
+        console.print(to_terminal(table), soft_wrap=True)
     else:
         console.out(TEXT_FORMATS[format](table), highlight=False, end="")
 
 
 def score_command(results: Path) -> int:
-    """Score traces again; 1 where a table says otherwise."""
+    """Score traces again; 1 where a table says otherwise, or where a trace cannot be read."""
     console = Console()
-    if results.suffix == ".parquet" and results.parent.suffix == ".traces":
-        for name, value in evaluate(Trace.load(results)).items():
+    if _is_trace(results):
+        for name, value in _scores(Trace.load(results)).items():
             console.out(f"{name:32} {value:.6f}")
         return 0
     table = ResultTable(results.parent, results.stem)
-    rows = read_table(results).to_dict("records")
-    finished = [row for row in rows if row["status"] == "ok"]
-    wrong = [row["cell"] for row in finished if not _agrees(table, row)]
-    for cell in wrong:
-        console.print(f"[red]{cell}: the table differs from its trace[/red]")
-    console.print(f"{len(finished) - len(wrong)} of {len(finished)} cells agree with their traces", highlight=False)
-    return 1 if wrong else 0
+    finished = [row for row in read_table(results).to_dict("records") if row["status"] == "ok"]
+    faults = {str(row["cell"]): fault for row in finished if (fault := _fault(table, row))}
+    for cell, fault in faults.items():
+        console.print(f"[red]{escape(f'{cell}: {fault}')}[/red]", highlight=False, soft_wrap=True)
+    console.print(f"{len(finished) - len(faults)} of {len(finished)} cells agree with their traces", highlight=False)
+    return 1 if faults else 0
 
 
-def _agrees(table: ResultTable, row: dict[Hashable, Any]) -> bool:
-    """Whether a row holds the scores of its trace."""
-    again = evaluate(table.trace(str(row["cell"])))
-    return all(np.isclose(row[name], again[name], atol=SAME, rtol=0, equal_nan=True) for name in METRICS)
+def _is_trace(path: Path) -> bool:
+    """Whether a file holds a trace rather than a result table, by its columns."""
+    if path.suffix != ".parquet":
+        return False
+    try:
+        return "hypothesis" in pq.read_schema(path).names
+    except (OSError, pa.ArrowException) as error:
+        raise DataError(f"{path}: not readable as a result table or a trace: {error}") from error
+
+
+def _scores(trace: Trace) -> dict[str, float]:
+    """Every number of a row that its trace decides: the metrics and their intervals."""
+    return evaluate(trace) | intervals(trace)
+
+
+def _fault(table: ResultTable, row: Mapping[Hashable, object]) -> str | None:
+    """What keeps a row from being confirmed by its trace: the trace is not there, or says otherwise."""
+    cell = str(row["cell"])
+    path = table.trace_path(cell)
+    if not path.exists():
+        return f"its trace {path} is missing; run the sweep again"
+    try:
+        again = _scores(table.trace(cell))
+    except DataError as error:
+        return str(error)
+    differ = [name for name, score in again.items() if not _same(row.get(name), score)]
+    return f"the table differs from its trace in {', '.join(differ)}" if differ else None
+
+
+def _same(stored: object, score: float) -> bool:
+    """Whether a table holds a score, to the decimals that it keeps."""
+    return isinstance(stored, float | int) and bool(np.isclose(stored, score, atol=SAME, rtol=0, equal_nan=True))
