@@ -14,6 +14,7 @@ from typing import Any
 import gymnasium as gym
 from gymnasium.wrappers import RecordVideo
 from rich.console import Console
+from rich.markup import escape
 
 from vprbench.agents import Config, build, label
 from vprbench.bootstrap import intervals
@@ -49,6 +50,8 @@ class Single:
 def run_command(request: Single) -> None:
     """Play one cell through the environment and print its scores; faults are not caught, as in a sweep."""
     console, config = Console(), _agent(request.agent)
+    _check_output("--trace", request.trace, ".parquet")
+    _check_output("--video", request.video, ".mp4")
     route, localizer = load_route(request.route, request.data, request.routes), build(config, request.seed)
     with Console(stderr=True).status("fit") as status:
         localizer.fit([Drive(drive) for drive in route.training])
@@ -61,9 +64,20 @@ def run_command(request: Single) -> None:
     trace = judge(route, recording, request.distance)
     if request.trace is not None:
         trace.save(request.trace)
-    console.print(f"[bold]{label(config)}[/bold] on {route.name}, a place every {request.distance:g} m")
+    named = f"[bold]{escape(label(config))}[/bold] on {escape(route.name)}"
+    console.print(f"{named}, a place every {request.distance:g} m", highlight=False)
     console.print(f"{localizer.recruiting} {sampling:.6g}: {len(recording.place_frames)} places, {len(trace)} queries")
     _print_scores(trace, console)
+
+
+def _check_output(option: str, path: Path | None, suffix: str) -> None:
+    """Refuse what could not be written, before anything is measured."""
+    if path is None:
+        return
+    if path.suffix.lower() != suffix:
+        raise ConfigError(f"{option} {path}: give a file whose name ends in {suffix}")
+    if not path.parent.is_dir():
+        raise ConfigError(f"{option} {path}: there is no folder {path.parent}; make it first")
 
 
 def _sampling(localizer: Localizer, route: Route, distance: float) -> float:
