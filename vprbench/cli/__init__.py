@@ -17,7 +17,3 @@ def main() -> None:
     except VprbenchError as error:
         sys.stderr.write(f"vprbench: {error}\n")
         sys.exit(error.exit_code)
-    except BrokenPipeError:
-        # The reader of our output has gone, as `| head` does: nothing is left to say to it.
-        sys.stderr.close()
-        sys.exit(141)
