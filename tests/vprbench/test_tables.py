@@ -266,6 +266,19 @@ def test_terminal() -> None:
         assert text in shown
 
 
+def test_a_narrow_terminal_cuts_no_figure_and_no_sentence() -> None:
+    table = make_table(ONE_ROUTE)
+    console = Console(width=30, file=io.StringIO(), force_terminal=False)
+    console.print(to_terminal(table), soft_wrap=True)
+    lines = console.file.getvalue().splitlines()  # type: ignore[attr-defined]
+    assert lines[0] == "PR-AUC, recall over the correct top-1s (place-field rule), in %, by sampling distance"
+    assert sum("(70.0 to 90.0)" in line and "(50.0 to 70.0)" in line for line in lines) == 1
+    assert "± standard deviation over routes and distances (of one: over seeds; of the mean: over its entries)" in lines
+    console = Console(width=30, file=io.StringIO(), force_terminal=False)
+    console.print(to_terminal(table, legend=False), soft_wrap=True)
+    assert console.file.getvalue().splitlines() == lines[: lines.index("4 cells, 0 failed")]  # type: ignore[attr-defined]
+
+
 def test_titles_name_metric_rule_and_unit() -> None:
     results = ONE_ROUTE.assign(auc_all_metric=0.5, error_median_m=1.234, vigilance=0.8765)
     titles = {

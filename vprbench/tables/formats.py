@@ -2,10 +2,11 @@
 
 from __future__ import annotations
 
-from dataclasses import asdict
+from dataclasses import asdict, dataclass
 from math import isnan
 
 import pandas as pd
+from rich.console import Console, ConsoleOptions, Group, RenderResult
 from rich.table import Table as RichTable
 from rich.text import Text
 
@@ -31,6 +32,9 @@ FREE_OF_RULES = {
 }
 PARTIAL = "†"
 LISTED = 5
+
+# Characters: wider than any table, and than any terminal.
+WIDEST = 10_000
 
 # Characters that mean something to the format, or that it may not print.
 MARKDOWN = str.maketrans({character: f"\\{character}" for character in "\\`*_|<>[]~"})
@@ -77,15 +81,29 @@ def notes(table: Table) -> list[str]:
     return said
 
 
-def to_terminal(table: Table) -> RichTable:
-    """The table for a terminal, to be printed by rich."""
-    drawn = RichTable(title=Text(title(table)), caption=Text("\n".join(notes(table))), caption_justify="left")
+@dataclass(frozen=True)
+class _Unshrunk:
+    """A table drawn as wide as its entries are: better a line that runs on than a figure cut in two."""
+
+    drawn: RichTable
+
+    def __rich_console__(self, console: Console, options: ConsoleOptions) -> RenderResult:
+        yield from console.render(self.drawn, options.update(max_width=WIDEST))
+
+
+def to_terminal(table: Table, *, legend: bool = True) -> Group:
+    """The table for a terminal, title above and notes below; print it with `soft_wrap`, lest rich crops it.
+
+    Leave out the legend where the next table has the same.
+    """
+    drawn = RichTable()
     drawn.add_column(Text(_named(table.axes[0])))
     for column in table.columns:
         drawn.add_column(Text(column), justify="right")
     for head, line in zip(table.rows, table.entries, strict=True):
         drawn.add_row(Text(head), *(_styled(entry, table.metric) for entry in line))
-    return drawn
+    below = [Text(note, "dim") for note in notes(table)] if legend else []
+    return Group(Text(title(table), "bold"), _Unshrunk(drawn), *below)
 
 
 def to_markdown(table: Table) -> str:

@@ -49,11 +49,12 @@ def make_table(
     _check_request(results, rows, columns, metric)
     if columns == "agent":
         return make_table(results, rows=columns, columns=rows, metric=metric).transposed()
-    cells = _tidy(results, rows, columns, metric)
-    row_keys, column_keys = _keys(cells[rows]), _keys(cells[columns])
-    known = {key: _entry(group) for key, group in cells.groupby([rows, columns])}
-    grid = [[known.get((row, column), Entry()) for column in column_keys] for row in row_keys]
-    heads = [_head(columns, key) for key in column_keys]
+    return _pivot(_tidy(results, rows, columns, metric), rows, columns, metric)
+
+
+def _pivot(cells: pd.DataFrame, rows: str, columns: str, metric: str) -> Table:
+    """The table of tidy cells."""
+    grid, heads = _grid(cells, rows, columns), [_head(columns, key) for key in _keys(cells[columns])]
     if len(heads) > 1:
         heads.append("mean")
         grid = [[*line, _mean(line)] for line in grid]
@@ -61,12 +62,18 @@ def make_table(
     return Table(
         metric=metric,
         axes=(rows, columns),
-        rows=tuple(_head(rows, key) for key in row_keys),
+        rows=tuple(_head(rows, key) for key in _keys(cells[rows])),
         columns=tuple(heads),
         entries=tuple(zip(*crowned, strict=True)),
         cells=len(cells),
         failed=tuple(cells["cell"][cells["status"] != "ok"]),
     )
+
+
+def _grid(cells: pd.DataFrame, rows: str, columns: str) -> list[list[Entry]]:
+    """The entries, line by line; one without cells where nothing was run."""
+    known = {key: _entry(group) for key, group in cells.groupby([rows, columns])}
+    return [[known.get((row, column), Entry()) for column in _keys(cells[columns])] for row in _keys(cells[rows])]
 
 
 def _check_results(results: pd.DataFrame) -> None:
