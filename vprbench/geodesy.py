@@ -10,7 +10,10 @@ from jaxtyping import Float64
 
 from vprbench.errors import DataError
 
-__all__ = ["check_geodetic", "compass_heading", "course", "local_positions", "wrap"]
+__all__ = ["COURSE_WINDOW", "check_geodetic", "compass_heading", "course", "local_positions", "wrap"]
+
+# Metres of road that a direction is taken over. Our choice: about one car length.
+COURSE_WINDOW = 5.0
 
 
 def wrap(angles: Float64[np.ndarray, "*shape"]) -> Float64[np.ndarray, "*shape"]:
@@ -47,7 +50,7 @@ def check_geodetic(geodetic: Float64[np.ndarray, "n 2"], where: Callable[[int], 
         raise DataError(f"{where(int(row))}: {name} {geodetic[row, column]:g} is not within {limits[column]:g} degrees")
 
 
-def course(positions: Float64[np.ndarray, "n 2"], window: float = 5.0) -> Float64[np.ndarray, " n"]:
+def course(positions: Float64[np.ndarray, "n 2"], window: float = COURSE_WINDOW) -> Float64[np.ndarray, " n"]:
     """Heading of the road at each position, radians clockwise from north, seen from the positions alone.
 
     It is the direction from the frame `window` / 2 metres behind to the one as far ahead, so that the
@@ -55,7 +58,7 @@ def course(positions: Float64[np.ndarray, "n 2"], window: float = 5.0) -> Float6
 
     Args:
         positions: (n, 2) east and north, metres.
-        window: metres of road between the two ends (our choice: about one car length).
+        window: metres of road between the two ends.
     """
     steps = np.linalg.norm(np.diff(positions, axis=0), axis=1)
     distance = np.concatenate([[0.0], np.cumsum(steps)])

@@ -10,7 +10,7 @@ import pytest
 from vprbench.catalogue import Catalogue, catalogue, load_route
 from vprbench.entries import KittiOdometryEntry
 from vprbench.errors import ConfigError, DataError
-from vprbench.readers.tables import read_numbers
+from vprbench.readers.number_files import read_numbers
 from vprbench.route import Route
 from vprbench.truth import revisit
 

@@ -10,7 +10,7 @@ from vprbench.catalogue import catalogue
 from vprbench.entries import KittiOdometryEntry
 from vprbench.geodesy import wrap
 from vprbench.readers.kitti import Motion
-from vprbench.readers.tables import read_numbers
+from vprbench.readers.number_files import read_numbers
 from vprbench.revisits import RevisitRule, RoadTwice, apart, find_revisits, first_runs
 
 # A ring road of 400 m, driven clockwise at 1 m a frame and 10 m/s.

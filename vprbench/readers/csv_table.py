@@ -11,7 +11,7 @@ import numpy as np
 from jaxtyping import Float64
 
 from vprbench.errors import DataError, nearest
-from vprbench.readers.tables import read_text
+from vprbench.readers.number_files import read_text
 
 __all__ = ["CsvTable", "read_csv"]
 

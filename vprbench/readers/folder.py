@@ -20,10 +20,10 @@ from jaxtyping import Float64
 
 from vprbench.availability import Need, need_of
 from vprbench.errors import DataError
-from vprbench.geodesy import check_geodetic, course, local_positions, wrap
+from vprbench.geodesy import COURSE_WINDOW, check_geodetic, course, local_positions, wrap
 from vprbench.readers.csv_table import CsvTable, read_csv
 from vprbench.readers.images import ImageFiles, content_hash, image_size
-from vprbench.readers.tables import check_increasing
+from vprbench.readers.number_files import check_increasing
 from vprbench.route import Camera, Traverse
 
 __all__ = ["FolderDrive"]
@@ -32,9 +32,6 @@ _LOCAL, _GEODETIC = ("east", "north"), ("latitude", "longitude")
 
 # Faster than any road vehicle: such a step is a lost fix (often 0, 0) or a wrong unit. Our choice.
 _FASTEST = 100.0
-
-# Metres of road that a direction is taken over. Our choice: about one car length.
-_COURSE_WINDOW = 5.0
 
 
 @dataclass(frozen=True)
@@ -142,9 +139,9 @@ class FolderDrive:
     def _headings(self, positions: Float64[np.ndarray, "n 2"]) -> Float64[np.ndarray, " n"]:
         """Radians in -pi..pi, clockwise from north."""
         if not self._has_heading:
-            if np.linalg.norm(np.diff(positions, axis=0), axis=1).sum() < _COURSE_WINDOW:
+            if np.linalg.norm(np.diff(positions, axis=0), axis=1).sum() < COURSE_WINDOW:
                 raise DataError(f"{self.path}: too short a drive to see its direction; add a column heading_deg")
-            return course(positions, _COURSE_WINDOW)
+            return course(positions)
         degrees = self._table.numbers("heading_deg")
         bad = np.flatnonzero(np.abs(degrees) > 360.0)
         if bad.size:

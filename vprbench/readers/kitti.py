@@ -18,10 +18,10 @@ from vprbench.availability import Need, need_of
 from vprbench.errors import DataError
 from vprbench.frame_ranges import FrameRun
 from vprbench.readers.images import ImageFiles, content_hash, image_size, scaled_camera
-from vprbench.readers.tables import check_increasing, read_numbers, read_text
+from vprbench.readers.number_files import check_increasing, read_numbers, read_text
 from vprbench.route import Traverse
 
-__all__ = ["Motion", "OdometryCamera", "OdometrySequence", "read_motion", "read_projection"]
+__all__ = ["Motion", "OdometryCamera", "OdometrySequence", "filmed", "read_motion", "read_projection"]
 
 # Left grey and left colour: the benchmark's poses are those of camera 0.
 OdometryCamera = Literal["image_0", "image_2"]
@@ -83,23 +83,44 @@ class OdometrySequence:
         if run.last >= len(self.motion.times):
             raise DataError(f"{self.poses}: {len(self.motion.times)} poses, too few for frame {run.last}")
         drive = slice(run.first, run.last + 1)
-        positions, headings, times = (values[drive] for values in self.motion)
+        motion = Motion(*(values[drive] for values in self.motion))
         paths = tuple(self._file(i) for i in run.frames)
         projection = read_projection(self.folder / "calib.txt", f"P{self.camera[-1]}")
-        size = image_size(paths[0])
-        return Traverse(
-            name=f"KITTI {self.name}, frames {run.first}-{run.last}",
-            frames=ImageFiles(paths, size),
-            positions=positions,
-            headings=headings,
-            times=times,
-            camera=scaled_camera(projection[0, 0], projection[0, 2], size[0], str(paths[0])),
-            indices=np.arange(run.first, run.last + 1),
-            checksum=content_hash(paths, positions, headings, times, projection),
-        )
+        return filmed(f"KITTI {self.name}", run, paths, projection, motion, motion)
 
     def _file(self, frame: int) -> Path:
         return self.folder / self.camera / f"{frame:06d}.png"
+
+
+def filmed(
+    name: str,
+    run: FrameRun,
+    paths: tuple[Path, ...],
+    projection: Float64[np.ndarray, "3 4"],
+    motion: Motion,
+    measured: tuple[Float64[np.ndarray, "..."], ...],
+) -> Traverse:
+    """The drive that a KITTI camera filmed.
+
+    Args:
+        name: of the recording.
+        run: the frames' numbers in it.
+        paths: their image files.
+        projection: of the camera, pixels of those images.
+        motion: where the vehicle was at each of them.
+        measured: the arrays that the motion was computed from, which the checksum is of.
+    """
+    size = image_size(paths[0])
+    return Traverse(
+        name=f"{name}, frames {run.first}-{run.last}",
+        frames=ImageFiles(paths, size),
+        positions=motion.positions,
+        headings=motion.headings,
+        times=motion.times,
+        camera=scaled_camera(projection[0, 0], projection[0, 2], size[0], str(paths[0])),
+        indices=np.arange(run.first, run.last + 1),
+        checksum=content_hash(paths, *measured, projection),
+    )
 
 
 def read_motion(poses: Path, times: Path) -> Motion:

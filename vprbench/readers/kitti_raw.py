@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import tomllib
 from collections.abc import Iterable, Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cache
 from importlib import resources
 from pathlib import Path
@@ -21,9 +21,8 @@ from vprbench.availability import Need, need_of
 from vprbench.errors import DataError
 from vprbench.frame_ranges import FrameRun
 from vprbench.geodesy import check_geodetic, compass_heading, local_positions
-from vprbench.readers.images import ImageFiles, content_hash, image_size, scaled_camera
-from vprbench.readers.kitti import read_projection
-from vprbench.readers.tables import check_increasing, read_numbers, read_text
+from vprbench.readers.kitti import Motion, filmed, read_projection
+from vprbench.readers.number_files import check_increasing, read_numbers, read_text
 from vprbench.route import Traverse
 
 __all__ = ["RawCamera", "RawDrive", "raw_run"]
@@ -82,22 +81,12 @@ class RawDrive:
     def traverse(self, run: FrameRun, origin: Float64[np.ndarray, "2"]) -> Traverse:
         """The drive along a run of frames, in the local plane about `origin` (latitude, longitude)."""
         fixes = self.fixes(run.frames)
-        geodetic, headings = fixes[:, :2], compass_heading(fixes[:, 2])
-        positions, times = local_positions(geodetic, origin), self._times(run)
+        geodetic, times = fixes[:, :2], self._times(run)
+        motion = Motion(local_positions(geodetic, origin), compass_heading(fixes[:, 2]), times)
         projection = read_projection(self.calibration, f"P_rect_{self.camera[-2:]}")
         paths = tuple(self._image(i) for i in run.frames)
-        size = image_size(paths[0])
-        return Traverse(
-            name=f"KITTI {self.name}, frames {run.first}-{run.last}",
-            frames=ImageFiles(paths, size),
-            positions=positions,
-            headings=headings,
-            times=times,
-            camera=scaled_camera(projection[0, 0], projection[0, 2], size[0], str(paths[0])),
-            indices=np.arange(run.first, run.last + 1),
-            checksum=content_hash(paths, fixes, times, projection),
-            geodetic=geodetic,
-        )
+        drive = filmed(f"KITTI {self.name}", run, paths, projection, motion, (fixes, times))
+        return replace(drive, geodetic=geodetic)
 
     def _times(self, run: FrameRun) -> Float64[np.ndarray, " n"]:
         """Seconds since the drive's first frame."""
