@@ -104,7 +104,7 @@ class RouteEnv(gym.Env[Observation, dict[str, Any]]):
         """Take the agent's answer to the present frame, and move on to the next one."""
         if self._index is None:
             raise ResetNeeded("this episode has ended: call reset(options={'phase': ...}) to begin the next")
-        index, place = self._index, self._place(action)
+        index, place = self._index, self._answered(action)
         info = self._info(index)
         reward = self._judge(index, place, info)
         self._hypothesis = place
@@ -141,11 +141,16 @@ class RouteEnv(gym.Env[Observation, dict[str, Any]]):
             self.winners[:] = NO_PLACE
         self._phase = phase  # type: ignore[assignment]
 
-    def _place(self, action: dict[str, Any]) -> int:
-        """The action's place, refused when it is outside the action space."""
-        place = int(action["place"])
+    def _answered(self, action: dict[str, Any]) -> int:
+        """The action's place; an action outside the action space is refused."""
+        try:
+            place, confidence = int(action["place"]), float(action["confidence"])
+        except (KeyError, TypeError, ValueError) as error:
+            raise InvalidAction(f"an action is {{'place': int, 'confidence': float}}, not {action!r}") from error
         if not NO_PLACE <= place < len(self.place_frames):
             raise InvalidAction(f"place {place} is not in {NO_PLACE}..{len(self.place_frames) - 1}")
+        if not 0.0 <= confidence <= 1.0:
+            raise InvalidAction(f"confidence {confidence} is not in 0..1")
         return place
 
     def _judge(self, index: int, place: int, info: dict[str, Any]) -> float:

@@ -5,13 +5,16 @@ from __future__ import annotations
 import hashlib
 import platform
 import subprocess
+from collections.abc import Mapping
 from functools import cache
 from importlib.metadata import version
 from pathlib import Path
+from typing import Any
 
+from vprbench.plugins import Kind, plugins
 from vprbench.route import Route
 
-__all__ = ["data_checksum", "versions"]
+__all__ = ["data_checksum", "origins", "versions"]
 
 REPOSITORY = Path(__file__).resolve().parents[1]
 LIBRARIES = ("numpy", "opencv-python-headless", "numba")
@@ -21,6 +24,15 @@ def data_checksum(route: Route) -> str:
     """Short sha256 over the checksums of all drives of a route."""
     drives = (route.learn, route.test, *route.training)
     return hashlib.sha256("".join(drive.checksum for drive in drives).encode()).hexdigest()[:16]
+
+
+def origins(config: Mapping[str, Any]) -> str:
+    """The distributions, with versions, that an agent's plug-ins come from; `config` as `normalise` gives it."""
+    named: list[tuple[Kind, str]] = [("localizer", config["localizer"])]
+    if "encoder" in config:
+        named.append(("encoder", config["encoder"]["name"]))
+    known = [plugins(kind)[name].origin for kind, name in named if name in plugins(kind)]
+    return ", ".join(dict.fromkeys(known))
 
 
 @cache

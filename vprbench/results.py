@@ -11,14 +11,18 @@ an interruption loses nothing that was finished.
 from __future__ import annotations
 
 import shutil
+from collections.abc import Collection, Iterator
+from contextlib import contextmanager
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
 
 import pandas as pd
+from filelock import FileLock, Timeout
 
 from vprbench.atomic import replacing
-from vprbench.errors import DataError
+from vprbench.columns import COLUMNS, typed
+from vprbench.errors import ConfigError, DataError
 from vprbench.runner import Outcome
 from vprbench.sweep import Cell
 from vprbench.trace import Trace
@@ -54,39 +58,76 @@ class ResultTable:
         """The table for people."""
         return self.folder / f"{self.name}.csv"
 
+    @property
+    def question(self) -> Path:
+        """The TOML of the sweep."""
+        return self.folder / f"{self.name}.toml"
+
     def trace_path(self, cell: str) -> Path:
-        """Where the trace of a cell lies."""
-        return self.folder / f"{self.name}.traces" / (cell.replace("/", "_") + ".parquet")
+        """Where the trace of a cell lies: in folders as its id says."""
+        return self.folder / f"{self.name}.traces" / f"{cell}.parquet"
+
+    def trace(self, cell: str) -> Trace:
+        """The trace of a finished cell."""
+        return Trace.load(self.trace_path(cell))
 
     def row(self, cell: Cell) -> dict[str, Any] | None:
-        """The finished row of a cell, None where it is missing or failed."""
+        """The finished row of a cell; None where it is missing, failed, or has lost its trace."""
         row = self._rows.get(cell.id)
-        return row if row is not None and row["status"] == "ok" else None
+        finished = row is not None and row["status"] == "ok" and self.trace_path(cell.id).exists()
+        return row if finished else None
+
+    def strangers(self, cells: Collection[Cell]) -> list[str]:
+        """Rows of cells that the sweep does not ask for any more."""
+        asked = {cell.id for cell in cells}
+        return [cell for cell in self._rows if cell not in asked]
 
     def frame(self) -> pd.DataFrame:
         """All rows as a table, sorted by route, agent, sampling distance and seed."""
-        rows = pd.DataFrame(list(self._rows.values()))
-        return rows.sort_values(SORT, ignore_index=True) if len(rows) else rows
+        return typed(pd.DataFrame(list(self._rows.values()))).sort_values(SORT, ignore_index=True)
 
-    def begin(self, question: Path) -> None:
-        """Make the folder, and lay the question beside the answer."""
+    @contextmanager
+    def writing(self, question: Path, cells: Collection[Cell]) -> Iterator[None]:
+        """While entered, this process alone writes here; the question is laid beside its answer.
+
+        Rows that answer no cell of the question move, with the whole table, to NAME.previous.csv.
+
+        Raises:
+            ConfigError: another process is writing, or the TOML there is not an earlier question of this table.
+            DataError: the folder cannot be written.
+        """
         try:
-            self.trace_path("").parent.mkdir(parents=True, exist_ok=True)
-            with replacing(self.folder / f"{self.name}.toml") as path:
-                shutil.copyfile(question, path)
+            self.folder.mkdir(parents=True, exist_ok=True)
+            with FileLock(self.folder / f".{self.name}.lock", timeout=0):
+                self._ask(question, cells)
+                yield
+        except Timeout as error:
+            raise ConfigError(f"another sweep is writing {self.csv}: wait for it, or choose another --out") from error
         except OSError as error:
             raise DataError(f"cannot write results: {error}; choose another folder with --out") from error
 
     def add(self, outcome: Outcome) -> None:
-        """Store the outcome of a cell: its trace, then its row."""
+        """Store the outcome of a cell: its trace, then its row. A failure replaces no answer to the same question."""
+        earlier = self.row(outcome.cell)
         if outcome.trace is not None:
             outcome.trace.save(self.trace_path(outcome.cell.id))
+        elif earlier is not None and earlier["agent_config"] == outcome.row["agent_config"]:
+            return
         self._rows[outcome.cell.id] = outcome.row
         self._save()
 
-    def forget(self) -> None:
-        """Drop every row, for a sweep that starts over."""
-        self._rows.clear()
+    def _ask(self, question: Path, cells: Collection[Cell]) -> None:
+        """Lay down the question, and set aside the rows that do not answer it."""
+        text = question.read_bytes()
+        if self.question.exists() and not self.csv.exists() and self.question.read_bytes() != text:
+            raise ConfigError(f"{self.question} is another question without an answer: choose another --out")
+        if strangers := self.strangers(cells):
+            shutil.copyfile(self.csv, self.folder / f"{self.name}.previous.csv")
+            for cell in strangers:
+                del self._rows[cell]
+            self._save()
+        with replacing(self.question) as path:
+            path.write_bytes(text)
 
     def _save(self) -> None:
         """Write the CSV and the Parquet."""
@@ -97,10 +138,6 @@ class ResultTable:
         with replacing(self.csv.with_suffix(".parquet")) as path:
             read_table(self.csv).to_parquet(path, index=False)
 
-    def trace(self, cell: str) -> Trace:
-        """The trace of a finished cell."""
-        return Trace.load(self.trace_path(cell))
-
 
 def read_table(path: Path) -> pd.DataFrame:
     """A result table from its CSV or Parquet.
@@ -110,16 +147,14 @@ def read_table(path: Path) -> pd.DataFrame:
     """
     try:
         table = pd.read_parquet(path) if path.suffix == ".parquet" else _read_csv(path)
+        missing = [name for name in COLUMNS if name not in table.columns]
+        if missing:
+            raise ValueError(f"it has no column {missing[0]!r} (an older version's table is measured anew elsewhere)")
+        return typed(table)
     except (OSError, ValueError) as error:
         raise DataError(f"{path}: not readable as a result table: {error}") from error
-    missing = {"cell", "status", "agent_config", *SORT} - set(table.columns)
-    if missing:
-        raise DataError(f"{path}: no result table: it has no column {', '.join(sorted(missing))}")
-    return table
 
 
 def _read_csv(path: Path) -> pd.DataFrame:
-    """The CSV, with text columns that may be empty kept as text."""
-    text = dict.fromkeys(["cell", "route", "agent", "status", "error", "commit", "vprbench", "python"], str)
-    table = pd.read_csv(path, dtype=text)
-    return table.fillna(dict.fromkeys(text.keys() & set(table.columns), ""))
+    """The CSV as text: nothing in it is taken for a number or for nothing by how it looks."""
+    return pd.read_csv(path, dtype=str, keep_default_na=False)

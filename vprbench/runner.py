@@ -13,11 +13,12 @@ from vprbench.bootstrap import INTERVAL_RULE, intervals
 from vprbench.catalogue import load_route
 from vprbench.env import RouteEnv
 from vprbench.episode import Recording, calibrate, judge, play
+from vprbench.errors import PluginError
 from vprbench.metrics import evaluate
 from vprbench.observation import Drive
 from vprbench.plugins import one_line
 from vprbench.protocols import DescriptorLocalizer, Localizer
-from vprbench.provenance import data_checksum, versions
+from vprbench.provenance import data_checksum, origins, versions
 from vprbench.response_matrix import Report, ResponseMatrix, silent
 from vprbench.route import Route
 from vprbench.sweep import Cell, Job
@@ -33,7 +34,7 @@ RULES = {
 }
 
 # Plays the route at one sampling distance: the vigilance or step used, and the answers.
-Place = Callable[[float], tuple[float, Recording]]
+Player = Callable[[float], tuple[float, Recording]]
 
 
 @dataclass(frozen=True)
@@ -62,7 +63,7 @@ def run(
             yield failure(job, cell, one_line(error))
 
 
-def _prepare(job: Job, route: Route, report: Report) -> Place:
+def _prepare(job: Job, route: Route, report: Report) -> Player:
     """Build and fit the agent; the fastest way to play the route with it."""
     localizer = build(job.config, job.seed)
     report("fit", 0, 1)
@@ -72,31 +73,33 @@ def _prepare(job: Job, route: Route, report: Report) -> Place:
     return _frame_by_frame(route, localizer, report)
 
 
-def _from_matrix(matrix: ResponseMatrix[Any]) -> Place:
+def _from_matrix(matrix: ResponseMatrix[Any]) -> Player:
     """Read the answers from the frame x frame response matrix."""
 
-    def place(sampling_distance: float) -> tuple[float, Recording]:
+    def played(sampling_distance: float) -> tuple[float, Recording]:
         sampling = matrix.sampling(sampling_distance)
         return sampling, matrix.recording(sampling)
 
-    return place
+    return played
 
 
-def _frame_by_frame(route: Route, localizer: Localizer, report: Report) -> Place:
+def _frame_by_frame(route: Route, localizer: Localizer, report: Report) -> Player:
     """Play the environment."""
 
-    def place(sampling_distance: float) -> tuple[float, Recording]:
+    def played(sampling_distance: float) -> tuple[float, Recording]:
         report("calibrate", 0, 1)
         sampling = calibrate(localizer, route, sampling_distance)
         report("play", 0, 1)
         return sampling, play(RouteEnv(route, sampling_distance), localizer)
 
-    return place
+    return played
 
 
-def _answer(job: Job, cell: Cell, route: Route, player: Place) -> Outcome:
+def _answer(job: Job, cell: Cell, route: Route, player: Player) -> Outcome:
     """Play and score one cell."""
     sampling, recording = player(cell.sampling_distance)
+    if not len(recording.place_frames):
+        raise PluginError(f"{cell.agent} made no place on {route.learn.name}")
     trace = judge(route, recording, cell.sampling_distance)
     places = len(recording.place_frames)
     measured = {
@@ -124,13 +127,15 @@ def failure(job: Job, cell: Cell, error: str) -> Outcome:
 
 def _identity(job: Job, cell: Cell) -> dict[str, Any]:
     """The columns that say which cell a row answers, by which rules, with which code."""
+    config = normalise(job.config)
     return {
         "cell": cell.id,
         "route": cell.route,
         "sampling_distance_m": cell.sampling_distance,
         "agent": cell.agent,
         "seed": cell.seed,
-        "agent_config": json.dumps(normalise(job.config), sort_keys=True),
+        "agent_config": json.dumps(config, sort_keys=True),
+        "plugins": origins(config),
         **RULES,
         **versions(),
     }

@@ -1,16 +1,21 @@
-"""A sweep: the question in a TOML, and the cells (route, sampling distance, agent, seed) that answer it."""
+"""A sweep: the question in a TOML, and the cells (route, sampling distance, agent, seed) that answer it.
+
+From question to answer: a TOML becomes a Sweep, the Sweep its Cells; `plan` leaves those that have no row yet; jobs
+group what can share a fitted agent; `pool` runs each Job in a worker, where `runner` makes an Outcome of every Cell;
+`results` keeps its row and trace.
+"""
 
 from __future__ import annotations
 
 import tomllib
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from fnmatch import fnmatchcase
 from importlib.resources import files
 from pathlib import Path
 from typing import Annotated, Any
 
-from pydantic import BaseModel, ConfigDict, Field, ValidationError
+from pydantic import BaseModel, ConfigDict, Field, ValidationError, field_validator
 
 from vprbench.agents import Config, is_seeded, validate
 from vprbench.errors import ConfigError, PluginError, nearest
@@ -18,12 +23,15 @@ from vprbench.errors import ConfigError, PluginError, nearest
 __all__ = ["Cell", "Job", "Sweep", "builtin_sweeps", "jobs", "load_sweep", "matching", "parse_sweep"]
 
 # Names become parts of cell ids, and so of file names.
-Name = Annotated[str, Field(pattern=r"^[^/\\\s]+$")]
+Name = Annotated[str, Field(pattern=r"^[^/\\\s.][^/\\\s]*$")]
 
 
 @dataclass(frozen=True, order=True)
 class Cell:
-    """One measurement: an agent on a route, with a place every `sampling_distance` metres on average."""
+    """One measurement: an agent on a route, with a place every `sampling_distance` metres.
+
+    Under vigilance that holds on average; with a step, a place comes at the first frame past it.
+    """
 
     route: str
     agent: str
@@ -43,7 +51,7 @@ class Job:
     route: str
     agent: str
     seed: int
-    config: Mapping[str, Any]
+    config: Config
     cells: tuple[Cell, ...]
 
     def __str__(self) -> str:
@@ -66,10 +74,19 @@ class Sweep(BaseModel):
 
     description: str = ""
     routes: Annotated[list[Name], Field(min_length=1)]
-    sampling_distances: Annotated[list[Annotated[float, Field(gt=0)]], Field(min_length=1)]
+    sampling_distances: Annotated[list[Annotated[float, Field(gt=0, allow_inf_nan=False)]], Field(min_length=1)]
     seeds: Annotated[list[Annotated[int, Field(ge=0)]], Field(min_length=1)] = [0]
-    agents: Annotated[dict[Name, dict[str, Any]], Field(min_length=1)]
+    agents: Annotated[dict[Name, str | dict[str, Any]], Field(min_length=1)]
     routes_file: Path | None = None
+
+    @field_validator("sampling_distances")
+    @classmethod
+    def _told_apart(cls, distances: list[float]) -> list[float]:
+        """Refuse distances that a cell's id cannot tell apart."""
+        shown = [f"{distance:g}" for distance in dict.fromkeys(distances)]
+        if len(set(shown)) < len(shown):
+            raise ValueError("distances must differ in their first six digits")
+        return distances
 
     def cells(self) -> Iterator[Cell]:
         """Every cell of the grid, in the order of the TOML."""
@@ -103,7 +120,7 @@ def matching(cells: Sequence[Cell], pattern: str) -> list[Cell]:
     Raises:
         ConfigError: no cell's id does.
     """
-    found = [cell for cell in cells if fnmatchcase(cell.id, f"*{pattern}*")]
+    found = [cell for cell in cells if fnmatchcase(cell.id, "*" + pattern.replace("[", "[[]") + "*")]
     if not found:
         raise ConfigError(f"--filter {pattern!r} matches no cell: {nearest(pattern, (cell.id for cell in cells))}")
     return found

@@ -9,12 +9,14 @@ from functools import cache
 from pathlib import Path
 
 from rich.console import Console
+from rich.markup import escape
 
 from vprbench.catalogue import catalogue, load_route
 from vprbench.cli.progress import SweepProgress
+from vprbench.data_root import data_root
 from vprbench.plan import Plan, plan
 from vprbench.pool import Progress, Settings, run_all
-from vprbench.provenance import data_checksum
+from vprbench.provenance import data_checksum, versions
 from vprbench.results import ResultTable
 from vprbench.sweep import Job, Sweep, jobs, load_sweep, matching
 from vprbench.tables import make_table, to_terminal
@@ -45,29 +47,36 @@ def sweep_command(request: Request) -> int:
     settings = _settings(request, sweep, question)
     steps = _plan(request, sweep, table, settings)
     todo = jobs(sweep, steps.todo)
-    console.print(_announce(question.stem, steps, settings), highlight=False)
+    console.print(_announce(question.stem, steps, table, sweep, settings), highlight=False)
     if request.dry_run:
         from vprbench.cli.estimating import print_estimate
 
         print_estimate(todo, settings, Console())
         return 0
-    table.begin(question)
     try:
-        _measure(todo, settings, table, console)
+        with table.writing(question, list(sweep.cells())):
+            failed = _measure(todo, settings, table, console)
     except KeyboardInterrupt:
         console.print("interrupted: what was finished is kept, and the same command goes on from there")
         return 130
-    return _conclude(table, console)
+    _conclude(table, failed, console)
+    return 1 if failed else 0
 
 
 def _settings(request: Request, sweep: Sweep, question: Path) -> Settings:
     """How to run it: the command line's routes file wins over the TOML's."""
     own = request.routes or (question.parent / sweep.routes_file if sweep.routes_file else None)
-    return Settings(request.jobs or len(os.sched_getaffinity(0)), request.timeout, request.data, own)
+    return Settings(request.jobs or _cores(), request.timeout, request.data, own)
+
+
+def _cores() -> int:
+    """Processors this process may use; not every system tells more than how many there are."""
+    return len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count() or 1
 
 
 def _plan(request: Request, sweep: Sweep, table: ResultTable, settings: Settings) -> Plan:
-    """What is to be measured; every route must be known before anything runs."""
+    """What is to be measured; data root and routes must be known before anything runs."""
+    data_root(settings.data)
     known = catalogue(settings.routes_file)
     for route in sweep.routes:
         known.entry(route)
@@ -82,42 +91,46 @@ def _plan(request: Request, sweep: Sweep, table: ResultTable, settings: Settings
     return plan(sweep, cells, table, checksum, request.overwrite)
 
 
-def _announce(name: str, steps: Plan, settings: Settings) -> str:
+def _announce(name: str, steps: Plan, table: ResultTable, sweep: Sweep, settings: Settings) -> str:
     """What will be done, in one line."""
-    parts = [f"{len(steps.todo)} cells to measure with {settings.workers} workers"]
-    if steps.changed:
-        parts.append(f"{len(steps.changed)} of them because their configuration or data changed")
-    if steps.kept:
-        parts.append(f"{len(steps.kept)} already there (--overwrite measures them again)")
-    return f"[bold]{name}[/bold]: " + ", ".join(parts)
+    rows = [row for row in map(table.row, steps.kept) if row is not None]
+    older = sum(row["commit"] != versions()["commit"] for row in rows)
+    strangers = len(table.strangers(list(sweep.cells())))
+    parts = [
+        f"{len(steps.todo)} cells to measure with {settings.workers} workers",
+        f"{len(steps.changed)} of them because their configuration, plug-in version or data changed",
+        f"{len(steps.kept)} already there (--overwrite measures them again)",
+        f"{older} of them by another commit of vprbench",
+        f"{strangers} rows that answer no cell of this sweep go to {name}.previous.csv",
+    ]
+    counts = (1, len(steps.changed), len(steps.kept), older, strangers)
+    return f"[bold]{escape(name)}[/bold]: " + ", ".join(part for part, n in zip(parts, counts, strict=True) if n)
 
 
-def _measure(todo: Sequence[Job], settings: Settings, table: ResultTable, console: Console) -> None:
-    """Run the jobs, storing each cell as it comes."""
+def _measure(todo: Sequence[Job], settings: Settings, table: ResultTable, console: Console) -> int:
+    """Run the jobs, storing each cell as it comes; how many failed."""
+    failed = 0
     if not todo:
-        return
+        return failed
     with SweepProgress(todo, console) as progress:
         for message in run_all(todo, settings):
             if isinstance(message, Progress):
                 progress.step(message)
             else:
+                failed += message.trace is None
                 table.add(message)
                 progress.finish(message)
+    return failed
 
 
-def _conclude(table: ResultTable, console: Console) -> int:
+def _conclude(table: ResultTable, failed: int, console: Console) -> None:
     """Show the answer, and say where it lies."""
     frame = table.frame()
-    failed = frame[frame["status"] != "ok"]
-    if len(failed) < len(frame):
+    if (frame["status"] == "ok").any():
         # One legend serves all three.
-        shown = [to_terminal(make_table(frame, metric=metric)) for metric in ("auc", "auc_all", "accuracy")]
-        for metric_table in shown[:-1]:
-            metric_table.caption = None
-        Console().print(*shown)
+        for metric in ("auc", "auc_all", "accuracy"):
+            shown = to_terminal(make_table(frame, metric=metric), legend=metric == "accuracy")
+            Console().print(shown, soft_wrap=True)
     console.print(f"written: {table.csv} (and .parquet, .toml, .traces/)", highlight=False)
-    if len(failed):
-        console.print(
-            f"[red]{len(failed)} cells failed; the column 'error' says why, and the same command tries again[/red]"
-        )
-    return 1 if len(failed) else 0
+    if failed:
+        console.print(f"[red]{failed} cells failed, for the reasons above; the same command tries them again[/red]")

@@ -1,0 +1,60 @@
+"""The columns of a result table, in their order, and the type of each: so that a failed row changes nothing else."""
+
+from __future__ import annotations
+
+import pandas as pd
+
+from vprbench.bootstrap import INTERVAL_METRICS
+from vprbench.metrics import METRICS
+
+__all__ = ["COLUMNS", "typed"]
+
+_INTERVALS = [f"{name}{rule}_{end}" for rule in ("", "_metric") for name in INTERVAL_METRICS for end in ("low", "high")]
+
+# Each column's type: text, whole numbers, or real numbers.
+COLUMNS: dict[str, str] = {
+    "cell": "str",
+    "route": "str",
+    "sampling_distance_m": "float64",
+    "agent": "str",
+    "seed": "Int64",
+    "status": "str",
+    "error": "str",
+    "environment": "str",
+    "split": "str",
+    "sampling": "float64",
+    "places": "Int64",
+    "place_spacing_m": "float64",
+    "learn_frames": "Int64",
+    "queries": "Int64",
+    "tolerance_mean_m": "float64",
+    **dict.fromkeys(METRICS, "float64"),
+    **dict.fromkeys(_INTERVALS, "float64"),
+    "agent_config": "str",
+    "tolerance_rule": "str",
+    "recall_denominator": "str",
+    "interval_rule": "str",
+    "data_checksum": "str",
+    "plugins": "str",
+    "vprbench": "str",
+    "commit": "str",
+    "python": "str",
+    "libraries": "str",
+}
+
+
+def typed(table: pd.DataFrame) -> pd.DataFrame:
+    """The table with every column, in order and of its type; what a row lacks is empty.
+
+    Raises:
+        ValueError: a column of numbers holds something else.
+    """
+    whole = table.reindex(columns=list(COLUMNS))
+    return pd.DataFrame({name: _column(whole[name], kind) for name, kind in COLUMNS.items()})
+
+
+def _column(values: pd.Series, kind: str) -> pd.Series:
+    """One column of its type; the empty text of a CSV is no number."""
+    if kind == "str":
+        return values.fillna("").astype(str)
+    return pd.to_numeric(values.replace("", None)).astype("float64" if kind == "float64" else "Int64")
