@@ -165,7 +165,10 @@ def _recall(counts: Tally) -> Float64[np.ndarray, "samples thresholds"]:
 
 
 def _faultless(counts: Tally) -> Int64[np.ndarray, " samples"]:
-    """How many right hypotheses pass the lowest threshold that no wrong one passes."""
+    """How many right hypotheses pass the lowest threshold that no wrong one passes.
+
+    right == passed holds from the surest threshold down to the first wrong hypothesis, and nowhere below it.
+    """
     return np.where(counts.right == counts.passed, counts.right, 0).max(axis=1)
 
 

@@ -25,8 +25,8 @@ class Revisit:
         nearest: (queries,) the learn frame nearest to each test frame.
         tolerance: (queries,) the distance to it, metres: d_NN.
         gaps: (queries, frames) the distance from each test frame to each learn frame, metres.
-        answers: (queries, frames) whether a learn frame lies within the tolerance of the nearest one, itself
-            always included: the frames at which a right hypothesis must have won.
+        answers: (queries, frames) the frames at which a right hypothesis must have won: those within the tolerance
+            of the nearest one, {f : |f - nn(q)| <= d_NN(q)}, where |.| is in metres and nn(q) itself is always one.
     """
 
     nearest: Int64[np.ndarray, " queries"]

@@ -4,6 +4,16 @@ A region is 2x2 cells, so with C the products of query cells and place cells, th
 C(upper left) + C(lower left) + C(upper right) + C(lower right). Neighbouring regions share their columns of two
 cells: each column's sum is computed once, which halves the work of multiplying 32-value descriptors, and neither
 the descriptors nor their 961 x 961 products are ever stored.
+
+Cells and regions share one index, row by row, 32 to a row; a region has that of its upper right cell:
+
+    cell (i, j)   at 32 i + j       +------+------+
+    region (i, j) at 32 i + j + 1   |    n | n+1  | <- here stands the region of these four cells
+                                    +------+------+
+                                    | n+32 | n+33 |
+                                    +------+------+
+
+In the scan over n + 1 the column of n + 1 and n + 33 completes that region, then opens the next one to the right.
 """
 
 from __future__ import annotations
@@ -123,7 +133,8 @@ def _best_pair(
     """Best product with any region of a place, of the regions whose upper right cell is `at` and the one below it.
 
     `left` holds the sums of the column of cells to the left, for both regions, each at the position to the right
-    of its own; those of this column are written to `right`.
+    of its own; those of this column are written to `right`. The caller then swaps the two, since this column is
+    the left one of the next regions.
     """
     top, middle, bottom = _cell(query, at), _cell(query, at + CELLS), _cell(query, at + 2 * CELLS)
     upper_best, lower_best = np.float32(0), np.float32(0)
