@@ -3,7 +3,9 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from statistics import median
 from time import perf_counter
+from typing import Any
 
 import numpy as np
 
@@ -12,12 +14,17 @@ from vprbench.catalogue import load_route
 from vprbench.observation import Drive
 from vprbench.pool import Settings
 from vprbench.protocols import DescriptorLocalizer, Localizer
+from vprbench.recruiting import HALVINGS
 from vprbench.route import Route
 from vprbench.sweep import Job
 
 __all__ = ["Estimate", "estimate"]
 
+# Frames to measure.
 SAMPLE = 12
+
+# Metres, so short that every frame becomes a place.
+SHORT_STEP = 1e-3
 
 
 @dataclass(frozen=True)
@@ -25,8 +32,8 @@ class Estimate:
     """Work of one job.
 
     Attributes:
-        frames: frames to describe, training frames included.
-        pairs: frame pairs to compare.
+        frames: frames to look at, training frames included; one that is played several times counts each time.
+        pairs: frame pairs to compare; 0 for a localizer that can only be played.
         seconds: on one core of this machine.
     """
 
@@ -49,9 +56,31 @@ def estimate(job: Job, settings: Settings) -> Estimate:
     samples = [Drive(drive)[:: max(1, len(drive) // SAMPLE)] for drive in route.training]
     localizer.fit(samples)
     fitting = (perf_counter() - started) * training / max(1, sum(map(len, samples)))
+    if isinstance(localizer, DescriptorLocalizer):
+        work = _by_matrix(job, route, localizer)
+    else:
+        work = _by_playing(job, route, localizer)
+    return Estimate(work.frames + training, work.pairs, work.seconds + fitting)
+
+
+def _by_matrix(job: Job, route: Route, localizer: DescriptorLocalizer[Any]) -> Estimate:
+    """What the response matrix takes: each frame is described once, for all cells together."""
     frames, pairs = len(route.learn) + len(route.test), _pairs(job, route, localizer)
-    describing, comparing = _costs(route, localizer)
-    return Estimate(frames + training, pairs, fitting + frames * describing + pairs * comparing)
+    describing, comparing = _matrix_costs(route, localizer)
+    return Estimate(frames, pairs, frames * describing + pairs * comparing)
+
+
+def _by_playing(job: Job, route: Route, localizer: Localizer) -> Estimate:
+    """What playing takes, cell by cell; under vigilance the drive is learned anew at each halving, at the most."""
+    seeing, answering = _playing_costs(route, localizer)
+    by_vigilance = localizer.recruiting == "vigilance"
+    learned = len(route.learn) * (HALVINGS + 1 if by_vigilance else 1)
+    asked = len(route.learn) + len(route.test)
+    # Only under vigilance does learning ask the places, half of which are there on average.
+    answers = asked + (learned / 2 if by_vigilance else 0)
+    places = sum(min(len(route.learn), route.learn.length / cell.sampling_distance) for cell in job.cells)
+    frames = len(job.cells) * (learned + asked)
+    return Estimate(frames, 0, frames * seeing + answers * places * answering)
 
 
 def _pairs(job: Job, route: Route, localizer: Localizer) -> int:
@@ -66,12 +95,10 @@ def _pairs(job: Job, route: Route, localizer: Localizer) -> int:
     return places * (frames + len(route.test))
 
 
-def _costs(route: Route, localizer: Localizer) -> tuple[float, float]:
+def _matrix_costs(route: Route, localizer: DescriptorLocalizer[Any]) -> tuple[float, float]:
     """Seconds to get and describe a frame, and to compare a pair."""
     drive = Drive(route.test, gps=False)
-    picked = [int(i) for i in np.linspace(0, len(drive) - 1, SAMPLE)]
-    if not isinstance(localizer, DescriptorLocalizer):
-        return _streaming_cost(route, localizer), 0.0
+    picked = _picked(drive)
     described = [localizer.describe(drive[i]) for i in picked[:2]]
     localizer.compare(described, described)
     started = perf_counter()
@@ -81,10 +108,29 @@ def _costs(route: Route, localizer: Localizer) -> tuple[float, float]:
     return (middle - started) / SAMPLE, (perf_counter() - middle) / SAMPLE**2
 
 
-def _streaming_cost(route: Route, localizer: Localizer) -> float:
-    """Seconds to learn or answer a frame, for a localizer that can only be played."""
-    localizer.clear(0.5)
-    started = perf_counter()
-    for observation in Drive(route.learn)[:SAMPLE]:
-        localizer.learn(observation)
-    return (perf_counter() - started) / SAMPLE
+def _playing_costs(route: Route, localizer: Localizer) -> tuple[float, float]:
+    """Seconds to get a frame and look at it, and to hold it against one place."""
+    learn, test = Drive(route.learn), Drive(route.test, gps=False)
+    localizer.clear(1.0 if localizer.recruiting == "vigilance" else SHORT_STEP)
+    localizer.learn(learn[0])
+    localizer.respond(test[0])
+    few = _answering(localizer, test)
+    places = 1 + sum(localizer.learn(learn[i]) is not None for i in _picked(learn))
+    many = _answering(localizer, test)
+    answering = max(0.0, (many - few) / max(1, places - 1))
+    return max(0.0, few - answering), answering
+
+
+def _answering(localizer: Localizer, drive: Drive) -> float:
+    """Seconds to get and answer a frame, a typical one: a hiccup of the machine does not count."""
+    taken = []
+    for i in _picked(drive):
+        started = perf_counter()
+        localizer.respond(drive[i])
+        taken.append(perf_counter() - started)
+    return median(taken)
+
+
+def _picked(drive: Drive) -> list[int]:
+    """A few frames from all along a drive."""
+    return [int(i) for i in np.linspace(0, len(drive) - 1, SAMPLE)]

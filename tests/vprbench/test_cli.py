@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import io
 import shutil
 import sys
 from collections.abc import Callable
@@ -10,11 +11,14 @@ from typing import NamedTuple
 
 import pandas as pd
 import pytest
+from rich.console import Console
 
 from vprbench.cli import main
+from vprbench.cli.progress import SweepProgress
+from vprbench.pool import Progress
 from vprbench.results import ResultTable
-from vprbench.runner import run
-from vprbench.sweep import jobs, parse_sweep
+from vprbench.runner import Outcome, run
+from vprbench.sweep import Cell, Job, jobs, parse_sweep
 
 THIRD_PARTY = Path(__file__).parents[1] / "third_party"
 
@@ -102,6 +106,31 @@ def test_names_in_brackets_are_printed_as_they_are(answered: ResultTable, tell: 
     assert "Tiny/5m/a[size=3]/s0: " in tell("score", "results/tiny.csv").out
     one = tell("run", "Tiny", 'localizer = "thumbnail", gain = 0.5', "--routes", "routes.toml", "--distance", "5")
     assert one.out.startswith("thumbnail[gain=0.5] on Tiny, a place every 5 m\n")
+
+
+@pytest.mark.parametrize(
+    ("stage", "answered", "shown"),
+    [
+        ("fit", 0, "0 %"),
+        ("compare frames", 0, "62 %"),
+        ("calibrate", 0, "5 %"),
+        ("calibrate", 1, "52 %"),
+        ("play", 1, "90 %"),
+    ],
+)
+def test_progress_moves_in_every_stage(stage: str, answered: int, shown: str) -> None:
+    cells = Cell("Tiny", "a[size=3]", 2.0, 0), Cell("Tiny", "a[size=3]", 5.0, 0)
+    job = Job("Tiny", "a[size=3]", 0, {"localizer": "thumbnail"}, cells)
+    console = Console(width=120, file=io.StringIO(), force_terminal=True, color_system=None)
+    with SweepProgress([job], console) as progress:
+        progress.step(Progress(0, "fit", 0, 1))
+        for cell in cells[:answered]:
+            progress.finish(Outcome(cell, {"status": "failed", "error": "no [frame] there"}, None))
+        progress.step(Progress(0, stage, 1 if "frames" in stage else 0, 2))
+    said = console.file.getvalue()  # type: ignore[attr-defined]
+    assert f"Tiny/a[size=3]/s0: {stage}" in said
+    assert shown in [line for line in said.splitlines() if stage in line][-1]
+    assert ("1/2  Tiny/2m/a[size=3]/s0  failed: no [frame] there" in said) == bool(answered)
 
 
 def test_a_table_that_agrees_with_its_traces_is_confirmed(answered: ResultTable, tell: Callable[..., Told]) -> None:

@@ -29,7 +29,9 @@ def print_estimate(todo: Sequence[Job], settings: Settings, console: Console) ->
             table.add_row(escape(str(job)), str(len(job.cells)), "", "", f"[red]{escape(str(error))}[/red]")
             continue
         total, longest = total + cost.seconds, max(longest, cost.seconds)
-        table.add_row(escape(str(job)), str(len(job.cells)), f"{cost.frames}", f"{cost.pairs}", f"{cost.seconds:.0f}")
+        table.add_row(
+            escape(str(job)), str(len(job.cells)), f"{cost.frames}", str(cost.pairs or "-"), f"{cost.seconds:.0f}"
+        )
     console.print(table)
     elapsed = max(longest, total / settings.workers)
     console.print(f"about {elapsed:.0f} s with {settings.workers} workers, each on a core of its own", highlight=False)

@@ -15,8 +15,11 @@ from vprbench.sweep import Job
 
 __all__ = ["SweepProgress"]
 
-# What a job passes through. Comparing frames takes the longest, so it is most of the bar.
-SHARES = {"fit": 0.05, "describe frames": 0.25, "compare frames": 0.65}
+# Where each stage of a job begins and ends on its bar. Comparing frames takes the longest, so it is most of it.
+STAGES = {"fit": (0.0, 0.05), "describe frames": (0.05, 0.3), "compare frames": (0.3, 0.95)}
+
+# A localizer that can only be played goes through these for each of its cells; where they begin.
+CELL_STAGES = {"calibrate": 0.0, "play": 0.8}
 
 
 class SweepProgress:
@@ -41,6 +44,7 @@ class SweepProgress:
         self._told: set[str] = set()
         self._shown: dict[int, TaskID] = {}
         self._done = [0.0] * len(jobs)
+        self._answered = [0] * len(jobs)
         self._whole = self._bars.add_task("sweep", total=len(jobs))
 
     def __enter__(self) -> SweepProgress:
@@ -57,13 +61,14 @@ class SweepProgress:
         job = self.jobs[step.job]
         if step.job not in self._shown:
             self._shown[step.job] = self._bars.add_task(f"  {job}", total=1.0)
-        self._advance(step.job, _fraction(step), f"  {job}: {step.stage}")
+        self._advance(step.job, _fraction(step, self._answered[step.job], len(job.cells)), f"  {job}: {step.stage}")
 
     def finish(self, outcome: Outcome) -> None:
         """Say that a cell is done, and how."""
         self._finished += 1
         number = next(n for n, job in enumerate(self.jobs) if outcome.cell in job.cells)
-        if outcome.cell == self.jobs[number].cells[-1]:
+        self._answered[number] += 1
+        if self._answered[number] == len(self.jobs[number].cells):
             self._advance(number, 1.0, f"  {self.jobs[number]}")
             if number in self._shown:
                 self._bars.remove_task(self._shown.pop(number))
@@ -88,11 +93,10 @@ class SweepProgress:
         self._bars.update(self._whole, completed=sum(self._done))
 
 
-def _fraction(step: Step) -> float:
-    """How much of its job a step stands for, 0..1."""
-    before = 0.0
-    for stage, share in SHARES.items():
-        if stage == step.stage:
-            return before + share * step.done / max(step.total, 1)
-        before += share
-    return 0.0
+def _fraction(step: Step, answered: int, cells: int) -> float:
+    """How much of its job a step stands for, 0..1, when so many of its cells are answered."""
+    if step.stage in CELL_STAGES:
+        begin = STAGES["fit"][1]
+        return begin + (1 - begin) * (answered + CELL_STAGES[step.stage]) / cells
+    begin, end = STAGES.get(step.stage, (0.0, 0.0))
+    return begin + (end - begin) * step.done / max(step.total, 1)

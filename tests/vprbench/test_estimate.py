@@ -1,0 +1,93 @@
+"""Estimates against the work that a job really does, counted, and timed by a clock that the localizer turns."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+import numpy as np
+import pytest
+
+from vprbench import estimate as module
+from vprbench.estimate import estimate
+from vprbench.pool import Settings
+from vprbench.protocols import Recruiting
+from vprbench.recruiting import Odometer
+from vprbench.route import Route
+from vprbench.runner import run
+from vprbench.sweep import Cell, Job
+from vprbench.types import Observation, Responses
+
+JOB = Job("toy", "fake", 0, {"localizer": "fake"}, tuple(Cell("toy", "fake", float(d), 0) for d in (4, 8)))
+SECONDS_A_FRAME, SECONDS_A_PLACE = 3.0, 0.25
+
+
+class Fake:
+    """A localizer that counts what it does, and takes its time by its own clock."""
+
+    def __init__(self, recruiting: Recruiting) -> None:
+        self.recruiting = recruiting
+        self.fitted = self.played = 0
+        self.now = 0.0
+
+    def fit(self, drives: Sequence[Sequence[Observation]]) -> None:
+        self.fitted += sum(map(len, drives))
+
+    def clear(self, sampling: float) -> None:
+        self.sampling, self.odometer, self.places = sampling, Odometer(sampling), list[float]()
+
+    def learn(self, observation: Observation) -> int | None:
+        due = self.odometer.due(observation["gps"])
+        if self.recruiting == "vigilance":
+            due = max(self.respond(observation), default=0.0) < self.sampling
+        else:
+            self._look()
+        if not due:
+            return None
+        self.places.append(float(observation["frame"].mean()))
+        return len(self.places) - 1
+
+    def respond(self, observation: Observation) -> Responses:
+        self._look()
+        self.now += SECONDS_A_PLACE * len(self.places)
+        away = np.abs(np.array(self.places) - observation["frame"].mean())
+        return np.asarray(1 / (1 + away / 10), np.float32)
+
+    def _look(self) -> None:
+        self.played += 1
+        self.now += SECONDS_A_FRAME
+
+
+@pytest.fixture
+def fake(request: pytest.FixtureRequest, toy_route: Route, monkeypatch: pytest.MonkeyPatch) -> Fake:
+    made = Fake(request.param)
+    for module_name in ("vprbench.estimate", "vprbench.runner"):
+        monkeypatch.setattr(f"{module_name}.build", lambda config, seed: made)
+        monkeypatch.setattr(f"{module_name}.load_route", lambda *names, **paths: toy_route)
+    monkeypatch.setattr(module, "perf_counter", lambda: made.now)
+    monkeypatch.setattr("vprbench.runner.normalise", lambda config: config)
+    monkeypatch.setattr("vprbench.runner.origins", lambda config: "", raising=False)
+    return made
+
+
+@pytest.mark.parametrize("fake", ["step"], indirect=True)
+def test_the_work_of_a_step_localizer_is_known_beforehand(fake: Fake) -> None:
+    said = estimate(JOB, Settings())
+    fake.fitted, fake.played, fake.now = 0, 0, 0.0
+    outcomes = list(run(JOB))
+    assert [outcome.row["error"] for outcome in outcomes] == ["", ""]
+    assert said.pairs == 0
+    assert said.frames == fake.fitted + fake.played
+    # The road makes 10 and 5 places; the last frame adds one to each.
+    assert said.seconds == pytest.approx(fake.now, rel=0.05)
+
+
+@pytest.mark.parametrize("fake", ["vigilance"], indirect=True)
+def test_the_halvings_of_a_vigilance_are_counted(fake: Fake) -> None:
+    said = estimate(JOB, Settings())
+    # Of 41 learn and 30 test frames: 25 times learned, then recorded and tested, for two cells; 10 trained.
+    assert said.frames == 2 * (25 * 41 + 41 + 30) + 10
+    assert said.pairs == 0
+    fake.fitted, fake.played, fake.now = 0, 0, 0.0
+    list(run(JOB))
+    assert 0.1 * said.frames < fake.played < said.frames
+    assert 0.1 * said.seconds < fake.now
