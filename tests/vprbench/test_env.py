@@ -10,6 +10,7 @@ import numpy as np
 import pytest
 from gymnasium.error import InvalidAction, ResetNeeded
 from gymnasium.utils.env_checker import check_env
+from gymnasium.vector import AutoresetMode
 from gymnasium.wrappers import FilterObservation, RecordEpisodeStatistics, RecordVideo
 
 from vprbench.env import RouteEnv
@@ -161,12 +162,37 @@ def test_statistics_count_the_right_answers(toy_route: Route) -> None:
     assert last["episode"]["l"] == 30
 
 
-def test_copies_play_side_by_side(toy_route: Route) -> None:
-    envs = gym.make_vec("vprbench/Route-v0", num_envs=2, vectorization_mode="sync", route=toy_route)
-    observation, _ = envs.reset(seed=0)
-    assert observation["frame"].shape == (2, 188, 642)
-    _, rewards, _, _, _ = envs.step(envs.action_space.sample())
-    assert rewards.tolist() == [0.0, 0.0]
+def drive_both(envs: gym.vector.VectorEnv[Any, Any, Any], phase: str, places: list[list[int]]) -> list[float]:
+    """Play a phase with these answers, one list a copy; the sum of each copy's rewards."""
+    _, info = envs.reset(options={"phase": phase})
+    assert info["phase"].tolist() == [phase] * 2
+    confidence = np.ones(2, np.float32)
+    steps = [envs.step({"place": np.array(pair), "confidence": confidence}) for pair in zip(*places, strict=True)]
+    assert [step[2].tolist() for step in steps] == [[False] * 2] * (len(steps) - 1) + [[True] * 2]
+    return np.sum([step[1] for step in steps], axis=0).tolist()
+
+
+@pytest.mark.parametrize("mode", [AutoresetMode.NEXT_STEP, AutoresetMode.DISABLED])
+def test_copies_play_side_by_side(toy_route: Route, mode: AutoresetMode) -> None:
+    """Test frame k is at 0.3 + 1.3586 k m: 15 lie nearest to learn frames 0..19, and 8 to frames 30..40."""
+    options = {"autoreset_mode": mode}
+    envs = gym.make_vec("vprbench/Route-v0", 2, vectorization_mode="sync", vector_kwargs=options, route=toy_route)
+    made = [0] + [-1] * 19 + [1] + [-1] * 20
+    assert drive_both(envs, "learn", [made, made]) == [0.0, 0.0]
+    assert drive_both(envs, "record", [[0] * 20 + [1] * 21, [0] * 30 + [1] * 11]) == [0.0, 0.0]
+    assert drive_both(envs, "test", [[0] * 30, [1] * 30]) == [15.0, 8.0]
+    envs.close()
+
+
+def test_a_step_after_the_end_begins_to_learn_by_default(toy_route: Route) -> None:
+    nothing = {"place": np.array([-1]), "confidence": np.ones(1, np.float32)}
+    envs = gym.make_vec("vprbench/Route-v0", vectorization_mode="sync", route=toy_route)
+    envs.reset()
+    for _ in range(41):
+        envs.step(nothing)
+    assert envs.step(nothing)[4]["phase"].tolist() == ["learn"]
+    with pytest.raises(PhaseError, match="play the learn phase"):
+        envs.reset(options={"phase": "record"})
     envs.close()
 
 
