@@ -180,6 +180,17 @@ def test_what_is_neither_table_nor_trace_is_told(here: Path, tell: Callable[...,
     assert len(done.err.splitlines()) == 1
 
 
+def test_checks_that_do_not_apply_are_not_called_ok(tell: Callable[..., Told]) -> None:
+    done = tell("check", "thumbnail")
+    assert done.code == 0
+    lines = done.out.splitlines()
+    assert "ok              clear-forgets" in lines
+    reason = "it has no describe and compare, which are optional"
+    assert [line for line in lines if "compare" in line] == [
+        f"does not apply  {name}-agrees-with-compare: {reason}" for name in ("respond", "learn")
+    ]
+
+
 @pytest.mark.parametrize(
     ("words", "said"),
     [

@@ -9,7 +9,7 @@ In the tests of a plug-in, one decorator makes one test of each check::
 `vprbench check NAME` runs the same checks on an installed plug-in, without any test.
 """
 
-from vprbench.checks.check import Check, CheckFailed
+from vprbench.checks.check import Check, CheckFailed, DoesNotApply
 from vprbench.checks.encoders import encoder_checks
 from vprbench.checks.localizers import localizer_checks
 from vprbench.checks.running import CheckResult, parametrize_with_checks, run_checks
@@ -18,6 +18,7 @@ __all__ = [
     "Check",
     "CheckFailed",
     "CheckResult",
+    "DoesNotApply",
     "encoder_checks",
     "localizer_checks",
     "parametrize_with_checks",

@@ -6,10 +6,11 @@ from collections.abc import Callable, Iterator
 from dataclasses import dataclass
 from functools import partial
 from typing import Generic, TypeVar
+from unittest import SkipTest
 
 from vprbench.errors import PluginError
 
-__all__ = ["Check", "CheckFailed", "Suite", "expect"]
+__all__ = ["Check", "CheckFailed", "DoesNotApply", "Suite", "expect"]
 
 Subject = TypeVar("Subject")
 
@@ -18,13 +19,18 @@ class CheckFailed(PluginError, AssertionError):
     """A plug-in does otherwise than its protocol asks; the text says what is asked, in one line."""
 
 
+class DoesNotApply(SkipTest):
+    """A check asks for what the protocol leaves open and this plug-in does not offer; pytest reports it as skipped."""
+
+
 @dataclass(frozen=True)
 class Check:
     """One thing that a protocol asks of a plug-in.
 
     Attributes:
         name: the demand in a few words, "match-lies-in-0-1" for example.
-        run: raises `CheckFailed`, or whatever the plug-in itself raises; returns nothing if all is well.
+        run: raises `CheckFailed`, or whatever the plug-in itself raises, or `DoesNotApply`; returns nothing if all is
+            well.
     """
 
     name: str

@@ -10,7 +10,7 @@ from typing import Any, get_args
 import numpy as np
 from jaxtyping import Float32
 
-from vprbench.checks.check import Check, Suite, expect
+from vprbench.checks.check import Check, DoesNotApply, Suite, expect
 from vprbench.checks.samples import drive, flat_frame, training_drives
 from vprbench.plugins import missing
 from vprbench.protocols import DescriptorLocalizer, Localizer, Recruiting
@@ -41,6 +41,11 @@ class _Subject:
     def drive(self) -> list[Observation]:
         """Six views, copied: what a localizer writes into them, no other check sees."""
         return deepcopy(self._views[:-1])
+
+    @property
+    def bend(self) -> list[Observation]:
+        """The same views on a road that turns at every frame."""
+        return drive(6, bent=True)
 
     @property
     def unseen(self) -> Observation:
@@ -126,12 +131,12 @@ def _numbers_places_in_order(subject: _Subject) -> None:
 @_suite.add
 def _recruits_as_often_as_asked(subject: _Subject) -> None:
     if subject.fitted.recruiting == "step":
-        asked, sparse, places = "with frames 1 m apart, step 2 recruits every other one", 2.0, [0, 2, 4]
+        asked, sparse, places = "step 2 recruits every 2 m of road, however it bends", 2.0, [0, 2, 4]
     else:
         asked, sparse, places = "vigilance 0 recruits the first frame, and no other", 0.0, [0]
     localizer = subject.cleared(sparse)
-    recruited = [index for index, seen in enumerate(subject.drive) if localizer.learn(seen) is not None]
-    expect(recruited == places, f"{asked}; frames {recruited} were")
+    recruited = [index for index, seen in enumerate(subject.bend) if localizer.learn(seen) is not None]
+    expect(recruited == places, f"{asked}; of frames 1 m apart {recruited} were recruited")
     _, every = subject.learned()
     expect(len(every) == len(subject.drive), "vigilance 1, or a step below the spacing, recruits every new view")
 
@@ -242,11 +247,16 @@ def _clear_forgets(subject: _Subject) -> None:
     expect(same, "after clear nothing is left: the same drive gives the same places and responses")
 
 
+def _descriptor(subject: _Subject) -> DescriptorLocalizer[Any]:
+    """The fitted localizer, if it has what only some have."""
+    if not isinstance(subject.fitted, DescriptorLocalizer):
+        raise DoesNotApply("it has no describe and compare, which are optional")
+    return subject.fitted
+
+
 @_suite.add
 def _respond_agrees_with_compare(subject: _Subject) -> None:
-    localizer, places = subject.learned()
-    if not isinstance(localizer, DescriptorLocalizer):
-        return
+    localizer, places = _descriptor(subject), subject.learned()[1]
     streamed = _answers(localizer, places)
     described = [localizer.describe(_blind(place)) for place in places]
     asked = "compare gives exactly what respond gives"
@@ -257,9 +267,9 @@ def _respond_agrees_with_compare(subject: _Subject) -> None:
 
 @_suite.add
 def _learn_agrees_with_compare(subject: _Subject) -> None:
-    localizer, places = subject.learned()
-    if not isinstance(localizer, DescriptorLocalizer) or localizer.recruiting != "vigilance":
-        return
+    localizer, places = _descriptor(subject), subject.learned()[1]
+    if localizer.recruiting != "vigilance":
+        raise DoesNotApply("it recruits by road, whatever the responses")
     described = [localizer.describe(_blind(place)) for place in places]
     matrix = localizer.compare(described, described)
     for vigilance in np.unique(matrix):

@@ -8,7 +8,7 @@ from functools import partial
 from typing import TYPE_CHECKING, Any
 
 from vprbench.agents import Config, build, build_encoder, normalise, validate
-from vprbench.checks.check import Check
+from vprbench.checks.check import Check, DoesNotApply
 from vprbench.checks.encoders import encoder_checks
 from vprbench.checks.localizers import localizer_checks
 from vprbench.errors import PluginError, VprbenchError
@@ -24,10 +24,17 @@ __all__ = ["CheckResult", "parametrize_with_checks", "run_checks"]
 
 @dataclass(frozen=True)
 class CheckResult:
-    """What came of one check: `fault` says in one line what is wrong, None if nothing is."""
+    """What came of one check.
+
+    Attributes:
+        name: of the check.
+        fault: what is wrong, in one line; None if nothing is.
+        inapplicable: why the check does not apply to this plug-in; None if it does.
+    """
 
     name: str
-    fault: str | None
+    fault: str | None = None
+    inapplicable: str | None = None
 
 
 def parametrize_with_checks(
@@ -81,8 +88,10 @@ def _encoder_option(table: dict[str, Any], encoder: Config | None) -> dict[str, 
 def _outcome(check: Check) -> CheckResult:
     try:
         check.run()
+    except DoesNotApply as reason:
+        return CheckResult(check.name, inapplicable=str(reason))
     except VprbenchError as error:
         return CheckResult(check.name, str(error))
     except Exception as error:
         return CheckResult(check.name, f"raised {one_line(error)}")
-    return CheckResult(check.name, None)
+    return CheckResult(check.name)

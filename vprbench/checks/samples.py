@@ -38,14 +38,17 @@ def flat_frame(grey: int) -> Frame:
     return np.full((FRAME_HEIGHT, FRAME_WIDTH), grey, np.uint8)
 
 
-def drive(frames: int, first_seed: int = 100, spacing: float = 1.0) -> list[Observation]:
-    """Observations `spacing` metres apart on a straight road to the east, each with a view of its own."""
+def drive(frames: int, first_seed: int = 100, spacing: float = 1.0, *, bent: bool = False) -> list[Observation]:
+    """Observations `spacing` metres of road apart, each with a view of its own.
+
+    The road runs straight to the east; a bent one turns at every frame, to the north and to the east again.
+    """
     return [
         Observation(
             frame=textured_frame(first_seed + index),
-            heading=np.array([pi / 2], np.float64),
+            heading=np.array([0.0 if bent and index % 2 else pi / 2], np.float64),
             camera=np.array(CAMERA, np.float64),
-            gps=np.array([index * spacing, 0.0], np.float64),
+            gps=spacing * np.array([index - index // 2, index // 2] if bent else [index, 0], np.float64),
         )
         for index in range(frames)
     ]

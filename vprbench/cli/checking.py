@@ -5,7 +5,7 @@ from __future__ import annotations
 from rich.console import Console
 from rich.markup import escape
 
-from vprbench.checks import run_checks
+from vprbench.checks import CheckResult, run_checks
 from vprbench.errors import ConfigError, nearest
 from vprbench.plugins import Kind, plugins
 
@@ -17,15 +17,19 @@ def check_command(name: str, encoder: str | None) -> int:
     console, failed = Console(), 0
     for result in run_checks(_kind(name), name, encoder=encoder):
         failed += result.fault is not None
-        mark = (
-            f"[red]failed[/red]  {result.name}: {escape(result.fault)}"
-            if result.fault
-            else f"[green]ok[/green]      {result.name}"
-        )
-        console.print(mark, highlight=False)
-    verdict = f"{failed} checks failed" if failed else "every check passed"
+        console.print(_line(result), highlight=False, soft_wrap=True)
+    verdict = f"{failed} checks failed" if failed else "every check that applies passed"
     console.print(f"{escape(name)}: {verdict}", highlight=False)
     return 1 if failed else 0
+
+
+def _line(result: CheckResult) -> str:
+    """The outcome of a check, in one line."""
+    if result.fault is not None:
+        return f"[red]failed[/red]          {result.name}: {escape(result.fault)}"
+    if result.inapplicable is not None:
+        return f"[dim]does not apply[/dim]  {result.name}: {escape(result.inapplicable)}"
+    return f"[green]ok[/green]              {result.name}"
 
 
 def _kind(name: str) -> Kind:
