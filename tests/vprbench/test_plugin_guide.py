@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 import re
+import subprocess
+import sys
 import tomllib
 from pathlib import Path
 from typing import Any
@@ -25,11 +27,12 @@ def blocks(language: str) -> list[str]:
 @pytest.fixture(autouse=True)
 def my_vpr(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
     """The distribution of the guide, as if installed."""
-    for block in blocks("python"):
-        if named := re.match(r"# (\S+\.py)\n", block):
+    for block in [*blocks("python"), *blocks("toml")]:
+        if named := re.match(r"# (\S+\.(?:py|toml))\n", block):
             file = tmp_path / named[1]
             file.parent.mkdir(exist_ok=True)
             file.write_text(block, encoding="utf-8")
+    (tmp_path / "my_vpr" / "__init__.py").touch()
     project = tomllib.loads(blocks("toml")[0])["project"]
     info = tmp_path / "my_vpr-0.1.dist-info"
     info.mkdir()
@@ -44,6 +47,25 @@ def my_vpr(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
 def agents() -> dict[str, Any]:
     table: dict[str, Any] = tomllib.loads(blocks("toml")[1])["agents"]
     return table
+
+
+def test_the_tree_of_the_guide_is_what_its_blocks_write(my_vpr: Path) -> None:
+    drawn = re.findall(r"[├└]── (\w+\.\w+)", blocks("text")[0])
+    assert sorted(drawn) == sorted(path.name for path in my_vpr.rglob("*.*") if "dist-info" not in str(path))
+
+
+def test_the_project_of_the_guide_builds_beside_results(my_vpr: Path) -> None:
+    pytest.importorskip("setuptools", minversion="61", reason="setuptools builds the guide's project")
+    (my_vpr / "results").mkdir()
+    (my_vpr / "built").mkdir()
+    build = [sys.executable, "-c", "import setuptools; setuptools.setup()", "egg_info", "--egg-base", "built"]
+    built = subprocess.run(build, cwd=my_vpr, capture_output=True, text=True)
+    assert built.returncode == 0, built.stderr
+    info = my_vpr / "built" / "my_vpr.egg-info"
+    assert (info / "top_level.txt").read_text() == "my_vpr\n"
+    offered = (info / "entry_points.txt").read_text()
+    assert "corners = my_vpr.corners:Corners" in offered
+    assert "tiny-image = my_vpr.tiny_image:TinyImage" in offered
 
 
 @pytest.mark.parametrize(
