@@ -208,3 +208,12 @@ def test_what_cannot_be_written_is_told_before_anything_runs(
     assert done.code == 2
     assert said in done.err
     assert len(done.err.splitlines()) == 1
+
+
+def test_a_film_without_its_extra_is_told_before_anything_runs(
+    tell: Callable[..., Told], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr("vprbench.cli.single.load_route", lambda *given: pytest.fail("it ran"))
+    monkeypatch.setattr("vprbench.cli.single.find_spec", lambda name: None)
+    done = tell("run", "Street-Wide", "thumbnail", "--video", "drive.mp4")
+    assert (done.code, done.err) == (2, "vprbench: --video needs moviepy: pip install 'vprbench[video]'\n")

@@ -7,6 +7,7 @@ import tomllib
 from collections.abc import Iterator
 from contextlib import contextmanager
 from dataclasses import dataclass
+from importlib.util import find_spec
 from pathlib import Path
 from tempfile import TemporaryDirectory
 from typing import Any
@@ -52,6 +53,8 @@ def run_command(request: Single) -> None:
     console, config = Console(), _agent(request.agent)
     _check_output("--trace", request.trace, ".parquet")
     _check_output("--video", request.video, ".mp4")
+    if request.video is not None and find_spec("moviepy") is None:
+        raise ConfigError("--video needs moviepy: pip install 'vprbench[video]'")
     route, localizer = load_route(request.route, request.data, request.routes), build(config, request.seed)
     with Console(stderr=True).status("fit") as status:
         localizer.fit([Drive(drive) for drive in route.training])
