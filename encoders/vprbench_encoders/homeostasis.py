@@ -8,7 +8,7 @@ Without it an atom that is picked early is learned early, fits better and is pic
 
 from __future__ import annotations
 
-from typing import Literal, Protocol
+from typing import Literal, Protocol, runtime_checkable
 
 import numpy as np
 from jaxtyping import Float64
@@ -20,6 +20,7 @@ __all__ = ["Homeostasis", "Kind", "homeostasis", "usage", "usage_entropy"]
 Kind = Literal["none", "heh", "hap"]
 
 
+@runtime_checkable
 class Homeostasis(Protocol):
     """How atoms compete, as it follows from how they were used so far."""
 

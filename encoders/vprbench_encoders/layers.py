@@ -7,7 +7,7 @@ maximum over them changes little when the signal shifts a little.
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from functools import cached_property
 from time import perf_counter
 from typing import NamedTuple
@@ -130,7 +130,7 @@ class LayerRecipe:
         selection = self.learning.equalise(signals, units, random) if self.equalised else by_correlation(len(units))
         layer = self.layer(units, mean, selection)
         seconds = perf_counter() - start
-        return layer, _report(layer, atoms, signals, prepared(held_out, mean), seconds)
+        return layer, self._report(layer, atoms, signals, prepared(held_out, mean), seconds)
 
     def layer(
         self, units: Float32[np.ndarray, "units size"], mean: Float32[np.ndarray, " size"], selection: Selection
@@ -138,6 +138,27 @@ class LayerRecipe:
         """The layer, given what is learned of it."""
         cells = pooling_cells(self.side, self.pool)
         return TopologicalLayer(units, mean, selection, cells, self.learning.picks, self.learning.rectified)
+
+    def _report(
+        self,
+        layer: TopologicalLayer,
+        atoms: Float32[np.ndarray, "atoms size"],
+        signals: Float32[np.ndarray, "samples size"],
+        held_out: Float32[np.ndarray, "others size"],
+        seconds: float,
+    ) -> LayerReport:
+        some = [kept[:: max(len(kept) // _REPORTED, 1)] for kept in (signals, held_out)]
+        of_atoms = Rates(*(self._rate(kept, atoms, by_correlation(len(atoms))) for kept in some))
+        of_units = Rates(*(self._rate(kept, layer.units, layer.selection) for kept in some))
+        return LayerReport(of_atoms, of_units, usage_entropy(layer.code(some[0]), len(layer.units)), seconds)
+
+    def _rate(
+        self,
+        signals: Float32[np.ndarray, "samples size"],
+        dictionary: Float32[np.ndarray, "atoms size"],
+        selection: Selection,
+    ) -> float:
+        return reconstruction_rate(signals, dictionary, self.learning.code(signals, dictionary, selection))
 
 
 def prepared(
@@ -148,20 +169,3 @@ def prepared(
     length = np.sqrt(np.einsum("ij,ij->i", signals, signals))
     signals *= (np.sqrt(inputs.shape[1]) / np.where(length > 0, length, np.inf)).astype(np.float32)[:, None]
     return signals
-
-
-def _report(
-    layer: TopologicalLayer,
-    atoms: Float32[np.ndarray, "atoms size"],
-    signals: Float32[np.ndarray, "samples size"],
-    held_out: Float32[np.ndarray, "others size"],
-    seconds: float,
-) -> LayerReport:
-    learned = replace(layer, units=atoms, selection=by_correlation(len(atoms)))
-    both = [kept[:: max(len(kept) // _REPORTED, 1)] for kept in (signals, held_out)]
-    of_atoms, of_units = (Rates(*(_rate(stage, kept) for kept in both)) for stage in (learned, layer))
-    return LayerReport(of_atoms, of_units, usage_entropy(layer.code(both[0]), len(layer.units)), seconds)
-
-
-def _rate(layer: TopologicalLayer, signals: Float32[np.ndarray, "samples size"]) -> float:
-    return reconstruction_rate(signals, layer.units, layer.code(signals))

@@ -115,7 +115,7 @@ def test_nearest_units_are_the_nearest() -> None:
     [
         ({"epochs": 0}, "epochs"),
         ({"neighbourhood": 0.1}, "neighbourhood"),
-        ({"final_neighbourhood": 0}, "neighbourhood"),
+        ({"final_neighbourhood": 0.0}, "neighbourhood"),
     ],
 )
 def test_impossible_options_are_refused_by_name(options: dict[str, float], named: str) -> None:

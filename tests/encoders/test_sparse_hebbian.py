@@ -144,7 +144,7 @@ def test_a_row_of_zeros_has_no_length_to_scale() -> None:
 
 @pytest.mark.parametrize(
     "option",
-    [{"picks": 0}, {"steps": 0}, {"batch": 0}, {"bins": 0}, {"passes": 0}, {"rate": 0}, {"homeostasis_rate": 2}],
+    [{"picks": 0}, {"steps": 0}, {"batch": 0}, {"bins": 0}, {"passes": 0}, {"rate": 0.0}, {"homeostasis_rate": 2.0}],
 )
 def test_impossible_options_are_refused_by_name(option: dict[str, Any]) -> None:
     with pytest.raises(ConfigError, match=next(iter(option))):

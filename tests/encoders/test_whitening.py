@@ -10,10 +10,9 @@ from vprbench_encoders.whitening import halve, radial_gain, whiten
 def test_the_gain_is_olshausen_and_fields() -> None:
     # f exp(-(f/f0)^4) rises as f, and peaks where 4 (f/f0)^4 = 1.
     peak = 0.39 / 4**0.25
-    assert radial_gain(np.array(peak)) == pytest.approx(peak * np.exp(-0.25))
+    np.testing.assert_allclose(radial_gain(np.array([0.0, peak])), [0.0, peak * np.exp(-0.25)])
     around = radial_gain(np.linspace(peak - 0.01, peak + 0.01, 101))
     assert around.argmax() == 50
-    assert radial_gain(np.array(0.0)) == 0.0
 
 
 @pytest.mark.parametrize(("across", "down"), [(8, 0), (0, 5), (20, 6), (36, 12)])
@@ -22,7 +21,7 @@ def test_a_wave_is_scaled_by_the_gain_at_its_frequency(across: int, down: int) -
     v, u = np.mgrid[:rows, :columns]
     # A cosine about pixel edges is its own reflection at the border, so the filter sees it without an end.
     wave = np.cos(np.pi * across / columns * (u + 0.5)) * np.cos(np.pi * down / rows * (v + 0.5))
-    gain = radial_gain(np.hypot(across / columns, down / rows) / 2)
+    gain = radial_gain(np.hypot([across / columns], [down / rows]) / 2)
     np.testing.assert_allclose(whiten(wave.astype(np.float32)), gain * wave, atol=1.2e-3)
 
 
