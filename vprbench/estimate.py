@@ -11,7 +11,7 @@ import numpy as np
 
 from vprbench.agents import build
 from vprbench.catalogue import load_route
-from vprbench.observation import Drive
+from vprbench.observation import Drive, observe
 from vprbench.pool import Settings
 from vprbench.protocols import DescriptorLocalizer, Localizer
 from vprbench.recruiting import HALVINGS
@@ -51,6 +51,9 @@ def estimate(job: Job, settings: Settings) -> Estimate:
     route = load_route(job.route, settings.data, settings.routes_file)
     localizer = build(job.config, job.seed)
     training = sum(len(drive) for drive in route.training)
+    for drive in (*route.training, route.learn, route.test):
+        # Drawing or opening a drive takes time once, which must not be scaled up.
+        observe(drive, 0)
     started = perf_counter()
     # Evenly spread frames, since a calibration may want places that lie apart.
     samples = [Drive(drive)[:: max(1, len(drive) // SAMPLE)] for drive in route.training]
