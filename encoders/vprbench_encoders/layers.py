@@ -21,7 +21,7 @@ from vprbench_encoders.pooling import max_pool, pooling_cells
 from vprbench_encoders.som import KohonenMap
 from vprbench_encoders.sparse_hebbian import SparseHebbian, unit_length
 
-__all__ = ["LayerRecipe", "LayerReport", "Rates", "TopologicalLayer"]
+__all__ = ["LayerRecipe", "LayerReport", "Rates", "TopologicalLayer", "prepared"]
 
 # Signals coded at a time: their correlations with 900 units take 3.5 MiB.
 _CHUNK = 1024
