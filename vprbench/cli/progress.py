@@ -73,7 +73,7 @@ class SweepProgress:
             if number in self._shown:
                 self._bars.remove_task(self._shown.pop(number))
         self._bars.update(self._whole, description=f"sweep: {self._finished} of {self._cells} cells")
-        self.console.print(f"{self._finished:>4}/{self._cells}  {self._line(outcome)}", highlight=False)
+        self.console.print(f"{self._finished:>4}/{self._cells}  {self._line(outcome)}", highlight=False, soft_wrap=True)
 
     def _line(self, outcome: Outcome) -> str:
         """A finished cell in one line; an error that many cells share is told once."""
