@@ -56,7 +56,7 @@ def test_the_tree_of_the_guide_is_what_its_blocks_write(my_vpr: Path) -> None:
 
 def test_the_project_of_the_guide_builds_beside_results(my_vpr: Path) -> None:
     pytest.importorskip("setuptools", minversion="61", reason="setuptools builds the guide's project")
-    (my_vpr / "results").mkdir()
+    (my_vpr / "runs").mkdir()
     (my_vpr / "built").mkdir()
     build = [sys.executable, "-c", "import setuptools; setuptools.setup()", "egg_info", "--egg-base", "built"]
     built = subprocess.run(build, cwd=my_vpr, capture_output=True, text=True)

@@ -32,7 +32,7 @@ def sweep(
     name: Annotated[
         str, typer.Argument(help="A built-in sweep (see: vprbench list sweeps) or a .toml file.")
     ] = "streets",
-    out: Out = Path("results"),
+    out: Out = Path("runs"),
     data: Data = None,
     routes: Routes = None,
     jobs: Annotated[int | None, typer.Option(min=1, help="Worker processes. Default: one a core.")] = None,
@@ -74,7 +74,7 @@ def run(
     run_command(Single(route, agent, distance, seed, data, routes, trace, video))
 
 
-@app.command(epilog="Example: vprbench table results/streets.csv --columns route --metric auc_all --format latex")
+@app.command(epilog="Example: vprbench table runs/streets.csv --columns route --metric auc_all --format latex")
 def table(
     results: Annotated[Path, typer.Argument(help="The .csv or .parquet of a sweep.")],
     rows: Annotated[str, typer.Option(help="Column of the results to list downwards.")] = "agent",
@@ -102,7 +102,7 @@ def list_(
     list_command(what, data, routes)
 
 
-@app.command(epilog="Example: vprbench score results/streets.csv")
+@app.command(epilog="Example: vprbench score runs/streets.csv")
 def score(
     results: Annotated[Path, typer.Argument(help="The .csv of a sweep, or one trace (.parquet).")],
 ) -> None:

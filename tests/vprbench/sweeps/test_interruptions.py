@@ -30,7 +30,7 @@ def start(here: Path, environment: dict[str, str]) -> subprocess.Popen[bytes]:
     quiet = subprocess.DEVNULL
     running = subprocess.Popen(command, cwd=here, env=environment, start_new_session=True, stdout=quiet, stderr=quiet)
     deadline = time.monotonic() + 120
-    while not (here / "results" / "tiny.csv").exists() and time.monotonic() < deadline:
+    while not (here / "runs" / "tiny.csv").exists() and time.monotonic() < deadline:
         time.sleep(0.02)
     return running
 
@@ -55,7 +55,7 @@ def test_an_interruption_loses_no_finished_cell(
     stop: signal.Signals,
     code: int,
 ) -> None:
-    csv = here / "results" / "tiny.csv"
+    csv = here / "runs" / "tiny.csv"
     (here / "tiny.toml").write_text(QUESTION)
     running = start(here, environment)
     running.send_signal(stop)

@@ -41,7 +41,7 @@ def test_a_typo_is_told_in_one_line(here: Path, tell: Tell, wrong: str, said: st
     assert done.code == 2
     assert said in done.err
     assert len(done.err.splitlines()) == 1
-    assert not (here / "results").exists()
+    assert not (here / "runs").exists()
 
 
 @pytest.mark.parametrize(
@@ -66,7 +66,7 @@ def test_a_wrong_word_is_told_in_one_line(tell: Tell, words: Sequence[str], said
 
 
 def test_a_folder_that_cannot_be_written_is_told_before_anything_runs(here: Path, tell: Tell) -> None:
-    (here / "results").write_text("a file in the way")
+    (here / "runs").write_text("a file in the way")
     done = tell("sweep", "tiny.toml")
     assert done.code == 3
     assert "--out" in done.err

@@ -19,7 +19,7 @@ OTHER = 'localizer = "nearest-view", encoder = "mean-patch"'
 
 
 def test_a_sweep_answers_its_question_and_goes_on_where_it_stopped(here: Path, vprbench: Run) -> None:
-    results = here / "results"
+    results = here / "runs"
     first = vprbench("sweep", "tiny.toml", "--jobs", "1")
     assert first.returncode == 0, first.stderr
     table = pd.read_csv(results / "tiny.csv")
@@ -55,7 +55,7 @@ def test_rogues_fail_alone(here: Path, vprbench: Run, ask: Ask) -> None:
     done = vprbench("sweep", "tiny.toml", "--jobs", "2", "--timeout", "20")
     assert done.returncode == 1
     assert "Traceback" not in done.stderr
-    table = pd.read_csv(here / "results" / "tiny.csv").set_index("agent")
+    table = pd.read_csv(here / "runs" / "tiny.csv").set_index("agent")
     assert table["status"].to_dict() == {"good": "ok"} | dict.fromkeys([*rogues, "broken"], "failed")
     error = table["error"].astype(str)
     assert "worker process died" in error["dies"]
@@ -67,7 +67,7 @@ def test_rogues_fail_alone(here: Path, vprbench: Run, ask: Ask) -> None:
 
 def test_a_mended_failure_leaves_no_mark(here: Path, vprbench: Run, ask: Ask) -> None:
     """Names that look like nothing or like numbers are names, and a failed row changes no other."""
-    csv = here / "results" / "tiny.csv"
+    csv = here / "runs" / "tiny.csv"
     ask({"NA": GOOD, "1e5": 'localizer = "raises"'})
     assert vprbench("sweep", "tiny.toml", "--jobs", "1").returncode == 1
     assert read_table(csv)["agent"].tolist() == ["1e5", "NA"]
@@ -80,11 +80,11 @@ def test_a_mended_failure_leaves_no_mark(here: Path, vprbench: Run, ask: Ask) ->
 def test_a_failure_replaces_no_answer(here: Path, vprbench: Run, ask: Ask) -> None:
     ask({"a": GOOD})
     assert vprbench("sweep", "tiny.toml", "--jobs", "1").returncode == 0
-    answer = (here / "results" / "tiny.csv").read_bytes()
+    answer = (here / "runs" / "tiny.csv").read_bytes()
     failed = vprbench("sweep", "tiny.toml", "--jobs", "1", "--overwrite", "--timeout", "0.01")
     assert failed.returncode == 1
     assert "timed out" in failed.stderr
-    assert (here / "results" / "tiny.csv").read_bytes() == answer
+    assert (here / "runs" / "tiny.csv").read_bytes() == answer
 
 
 def test_what_changed_is_measured_again(here: Path, vprbench: Run, ask: Ask) -> None:
@@ -107,13 +107,13 @@ def test_rows_without_a_question_are_set_aside(here: Path, vprbench: Run, ask: A
     ask({"renamed": GOOD})
     again = vprbench("sweep", "tiny.toml", "--jobs", "1")
     assert "1 rows that answer no cell of this sweep go to tiny.previous.csv" in again.stderr
-    assert read_table(here / "results" / "tiny.csv")["agent"].tolist() == ["renamed"]
-    assert read_table(here / "results" / "tiny.previous.csv")["agent"].tolist() == ["a"]
+    assert read_table(here / "runs" / "tiny.csv")["agent"].tolist() == ["renamed"]
+    assert read_table(here / "runs" / "tiny.previous.csv")["agent"].tolist() == ["a"]
 
 
 def test_two_sweeps_do_not_write_one_table(here: Path, vprbench: Run) -> None:
-    (here / "results").mkdir()
-    with FileLock(here / "results" / ".tiny.lock"):
+    (here / "runs").mkdir()
+    with FileLock(here / "runs" / ".tiny.lock"):
         done = vprbench("sweep", "tiny.toml", "--jobs", "1")
     assert done.returncode == 2
     assert "another sweep is writing" in done.stderr
