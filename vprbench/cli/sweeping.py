@@ -131,6 +131,6 @@ def _conclude(table: ResultTable, failed: int, console: Console) -> None:
         for metric in ("auc", "auc_all", "accuracy"):
             shown = to_terminal(make_table(frame, metric=metric), legend=metric == "accuracy")
             Console().print(shown, soft_wrap=True)
-    console.print(f"written: {table.csv} (and .parquet, .toml, .traces/)", highlight=False)
+    console.print(f"written: {table.csv} (and .parquet, .toml, .traces/)", highlight=False, soft_wrap=True)
     if failed:
         console.print(f"[red]{failed} cells failed, for the reasons above; the same command tries them again[/red]")

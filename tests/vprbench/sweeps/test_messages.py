@@ -10,33 +10,25 @@ import pytest
 
 Tell = Callable[..., Any]
 
-QUESTION = """
-routes = ["Tiny", "Tiny-2"]
-sampling_distances = [2, 5]
-routes_file = "routes.toml"
-
-[agents]
-thumbnail = { localizer = "thumbnail" }
-patches = { localizer = "nearest-view", encoder = "mean-patch" }
-"""
-
 
 @pytest.mark.parametrize(
-    ("wrong", "said"),
+    ("right", "wrong", "said"),
     [
-        (QUESTION.replace("routes =", "rotues ="), "did you mean 'routes'"),
-        (QUESTION.replace("[2, 5]", "[2, -5]"), "sampling_distances.1"),
-        (QUESTION.replace('"Tiny-2"', '"Tinny"'), "did you mean 'Tiny"),
-        (QUESTION.replace('"mean-patch"', '"main-patch"'), "did you mean 'mean-patch'"),
-        (QUESTION.replace('encoder = "mean-patch"', 'encoder = "mean-patch", flor = 1'), "did you mean 'floor'"),
-        (QUESTION.replace("[2, 5]", "[2, 5"), "tiny.toml"),
-        (QUESTION.replace("[2, 5]", "[2, inf]"), "sampling_distances.1"),
-        (QUESTION.replace("[2, 5]", "[2, 2.0000001]"), "must differ"),
-        (QUESTION.replace("patches =", "'../patches' ="), "agents"),
+        ("routes =", "rotues =", "did you mean 'routes'"),
+        ("[2, 5]", "[2, -5]", "sampling_distances.1"),
+        ("[2, 5]", "[2, inf]", "sampling_distances.1"),
+        ("[2, 5]", "[2, 2.0000001]", "must differ"),
+        ("[2, 5]", "[2, 5", "tiny.toml"),
+        ('"Tiny-2"', '"Tinny"', "did you mean 'Tiny"),
+        ('"mean-patch"', '"main-patch"', "did you mean 'mean-patch'"),
+        ('"mean-patch"', '"mean-patch", flor = 1', "did you mean 'floor'"),
+        ("patches =", "'../patches' =", "agents"),
     ],
 )
-def test_a_typo_is_told_in_one_line(here: Path, tell: Tell, wrong: str, said: str) -> None:
-    (here / "tiny.toml").write_text(wrong)
+def test_a_typo_is_told_in_one_line(here: Path, tell: Tell, right: str, wrong: str, said: str) -> None:
+    question = (here / "tiny.toml").read_text()
+    assert right in question
+    (here / "tiny.toml").write_text(question.replace(right, wrong))
     done = tell("sweep", "tiny.toml")
     assert done.code == 2
     assert said in done.err
