@@ -140,9 +140,8 @@ class Trace:
             return cls.from_frame(table.to_pandas())
         except (OSError, ValueError, pa.ArrowException, DataError) as error:
             reason = str(error).split("\n")[0]
-            raise DataError(
-                f"{path}: not a readable trace ({reason}); measure its cell again: vprbench sweep NAME --overwrite --filter CELL"
-            ) from error
+            mend = "measure its cell again: vprbench sweep NAME --overwrite --filter CELL"
+            raise DataError(f"{path}: not a readable trace ({reason}); {mend}") from error
 
     def _columns(self) -> dict[str, np.ndarray]:
         return {name: getattr(self, name) for name in DTYPES}
