@@ -12,7 +12,7 @@ from multiprocessing.context import SpawnContext
 from multiprocessing.managers import SyncManager
 from pathlib import Path
 from queue import Empty, Queue
-from threading import Thread
+from threading import Barrier, Thread
 from time import monotonic, sleep
 
 import cv2
@@ -27,6 +27,9 @@ __all__ = ["Progress", "Settings", "run_all"]
 
 # How often a worker reports, seconds: a person sees no difference, a queue does.
 REPORT_EVERY = 0.1
+
+# How long workers may take to start, seconds, before nobody waits for them any more.
+ASSEMBLY = 30.0
 
 
 @dataclass(frozen=True)
@@ -66,6 +69,7 @@ def run_all(todo: Sequence[Job], settings: Settings) -> Iterator[Progress | Outc
             submit(args=[job, number, settings, messages]): job for number, job in enumerate(todo)
         }
         unanswered = {cell: job for job in todo for cell in job.cells}
+        lost = False
         try:
             while pending:
                 ended, _ = wait(pending, timeout=REPORT_EVERY, return_when=FIRST_COMPLETED)
@@ -75,12 +79,22 @@ def run_all(todo: Sequence[Job], settings: Settings) -> Iterator[Progress | Outc
                     yield message
                 for future in ended:
                     job = pending.pop(future)
+                    lost = lost or isinstance(future.exception(), (TimeoutError, ProcessExpired))
                     for cell in job.cells:
                         if unanswered.pop(cell, None) is not None:
                             yield failure(job, cell, _fault(future, settings))
+            if lost:
+                # A pool that closes while it starts a worker anew makes that worker complain on the terminal.
+                here = manager.Barrier(settings.workers)
+                wait([pool.schedule(_assemble, args=[here]) for _ in range(settings.workers)], timeout=ASSEMBLY)
         except BaseException:
             pool.stop()
             raise
+
+
+def _assemble(here: Barrier) -> None:
+    """Wait in one worker until all are there."""
+    here.wait(ASSEMBLY)
 
 
 def _manager(context: SpawnContext) -> SyncManager:

@@ -97,8 +97,8 @@ def test_what_a_plugin_raises_is_told_in_one_line(tmp_path: Path, monkeypatch: p
     info = tmp_path / "rude-9.dist-info"
     info.mkdir()
     (info / "METADATA").write_text("Metadata-Version: 2.1\nName: rude\nVersion: 9\n")
-    (info / "entry_points.txt").write_text("[vprbench.encoders]\nrude = rude_vpr:Rude\n")
-    (tmp_path / "rude_vpr.py").write_text(
+    (info / "entry_points.txt").write_text("[vprbench.encoders]\nrude = rude_checked_vpr:Rude\n")
+    (tmp_path / "rude_checked_vpr.py").write_text(
         "from acme_vpr.mean_patch import MeanPatch\n"
         "class Rude(MeanPatch):\n"
         "    def match(self, queries, memory):\n"
