@@ -14,6 +14,7 @@ from rich.markup import escape
 from vprbench.catalogue import catalogue, load_route
 from vprbench.cli.progress import SweepProgress
 from vprbench.data_root import data_root
+from vprbench.errors import DataError
 from vprbench.plan import Plan, plan
 from vprbench.pool import Progress, Settings, run_all
 from vprbench.provenance import data_checksum, versions
@@ -46,7 +47,7 @@ def sweep_command(request: Request) -> int:
     table = ResultTable(request.out, question.stem)
     settings = _settings(request, sweep, question)
     steps = _plan(request, sweep, table, settings)
-    todo = jobs(sweep, steps.todo)
+    todo = _longest_first(jobs(sweep, steps.todo), settings)
     console.print(_announce(question.stem, steps, table, sweep, settings), highlight=False)
     if request.dry_run:
         from vprbench.cli.estimating import print_estimate
@@ -89,6 +90,20 @@ def _plan(request: Request, sweep: Sweep, table: ResultTable, settings: Settings
         return data_checksum(load_route(route, settings.data, settings.routes_file))
 
     return plan(sweep, cells, table, checksum, request.overwrite)
+
+
+def _longest_first(todo: Sequence[Job], settings: Settings) -> list[Job]:
+    """Jobs by the frames of their route, most first: the longest must not be the last to start."""
+
+    @cache
+    def frames(name: str) -> int:
+        try:
+            route = load_route(name, settings.data, settings.routes_file)
+        except DataError:
+            return 0
+        return len(route.learn) + len(route.test)
+
+    return sorted(todo, key=lambda job: frames(job.route), reverse=True)
 
 
 def _announce(name: str, steps: Plan, table: ResultTable, sweep: Sweep, settings: Settings) -> str:
