@@ -2,15 +2,28 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
-from typing import ClassVar, Literal, Protocol, TypeVar, runtime_checkable
+from collections.abc import Iterator, Mapping, Sequence
+from pathlib import Path
+from typing import TYPE_CHECKING, ClassVar, Literal, Protocol, Self, TypeVar, runtime_checkable
 
 import numpy as np
 from jaxtyping import Float32
 
-from vprbench.types import Frame, Landmarks, Observation, Responses
+from vprbench.types import Frame, Landmarks, LearningStep, Observation, Responses
 
-__all__ = ["DescriptorLocalizer", "Encoder", "Localizer", "Recruiting"]
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
+
+__all__ = [
+    "DescriptorLocalizer",
+    "Drawn",
+    "Encoder",
+    "Localizer",
+    "Measured",
+    "Recruiting",
+    "Stepwise",
+    "Storable",
+]
 
 # Which quantity says when a localizer recruits a new place: a vigilance (0..1) or a step (metres).
 Recruiting = Literal["vigilance", "step"]
@@ -42,16 +55,58 @@ class Encoder(Protocol):
 
 
 @runtime_checkable
+class Stepwise(Encoder, Protocol):
+    """An encoder that learns step by step, so that its progress can be shown."""
+
+    def learning(self, frames: Sequence[Frame]) -> Iterator[LearningStep]:
+        """Do what `fit` does, a step at a time; it has learned once the iterator is exhausted."""
+        ...
+
+
+@runtime_checkable
+class Storable(Encoder, Protocol):
+    """An encoder whose learned state goes to a file and comes back, so that it need be learned only once."""
+
+    def save(self, path: Path) -> None:
+        """Write what was learned, with the options it was learned under, to exactly this file."""
+        ...
+
+    @classmethod
+    def load(cls, path: Path) -> Self:
+        """The encoder that was saved: it encodes and matches bit for bit as the one that learned."""
+        ...
+
+
+@runtime_checkable
+class Measured(Encoder, Protocol):
+    """An encoder that can put what it learned into numbers."""
+
+    def measures(self) -> Mapping[str, float]:
+        """Numbers about what was learned, by name; those that end in `_seconds` are wall-clock."""
+        ...
+
+
+@runtime_checkable
+class Drawn(Encoder, Protocol):
+    """An encoder that can draw what it learned."""
+
+    def figures(self) -> Mapping[str, Figure]:
+        """Drawings of what was learned, by the stem of the file to put each in."""
+        ...
+
+
+@runtime_checkable
 class Localizer(Protocol):
     """The memory: learns places from observations and says how strongly each responds to a new one.
 
-    A localizer that uses an encoder takes it as its constructor argument `encoder`.
+    A localizer that uses an encoder takes it as its constructor argument `encoder`, and finds it fitted: whoever
+    calls `Localizer.fit` has fitted the encoder before, and the localizer never fits it.
     """
 
     recruiting: ClassVar[Recruiting]
 
     def fit(self, drives: Sequence[Sequence[Observation]]) -> None:
-        """Train on drives that lie off the evaluated route (`gps` is comparable within one drive only)."""
+        """Train what is the localizer's own on drives that lie off the evaluated route (`gps` is comparable within one drive only)."""
         ...
 
     def clear(self, sampling: float) -> None:

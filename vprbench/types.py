@@ -14,6 +14,7 @@ __all__ = [
     "Frame",
     "Hypothesis",
     "Landmarks",
+    "LearningStep",
     "Observation",
     "Responses",
     "hypothesis",
@@ -56,6 +57,18 @@ class Landmarks(NamedTuple):
 
     signatures: Float32[np.ndarray, "points size"]
     points: Float32[np.ndarray, "points 2"]
+
+
+class LearningStep(NamedTuple):
+    """How far an encoder's learning has come: `done` of `total` steps of a stage, and what to say of it now.
+
+    A stage may end before `total`; `note` is shown live, for example "reconstruction rate 0.54".
+    """
+
+    stage: str
+    done: int
+    total: int
+    note: str = ""
 
 
 class Hypothesis(NamedTuple):
