@@ -106,7 +106,10 @@ class Localizer(Protocol):
     recruiting: ClassVar[Recruiting]
 
     def fit(self, drives: Sequence[Sequence[Observation]]) -> None:
-        """Train what is the localizer's own on drives that lie off the evaluated route (`gps` is comparable within one drive only)."""
+        """Train what is the localizer's own on drives off the evaluated route.
+
+        `gps` is comparable within one drive only.
+        """
         ...
 
     def clear(self, sampling: float) -> None:
