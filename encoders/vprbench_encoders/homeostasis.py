@@ -11,7 +11,7 @@ from __future__ import annotations
 from typing import Literal, Protocol, runtime_checkable
 
 import numpy as np
-from jaxtyping import Float64
+from jaxtyping import Float, Float64
 
 from vprbench_encoders.matching_pursuit import SCALE, Selection, SparseCode, by_correlation
 
@@ -53,11 +53,10 @@ def usage(code: SparseCode, atoms: int) -> Float64[np.ndarray, " atoms"]:
     return np.bincount(code.atoms[code.values != 0], minlength=atoms) / max(len(code.atoms), 1)
 
 
-def usage_entropy(code: SparseCode, atoms: int) -> float:
-    """How evenly the atoms are used: entropy of their shares of all picks, 1 for equal shares, 0 for a single atom."""
-    share = usage(code, atoms)
-    share = share[share > 0] / share.sum()
-    return float(-(share * np.log(share)).sum() / np.log(atoms))
+def usage_entropy(used: Float[np.ndarray, " atoms"]) -> float:
+    """How evenly atoms of this usage are used: entropy of their shares, 1 for equal shares, 0 for a single atom."""
+    share = used[used > 0] / used.sum()
+    return float(-(share * np.log(share)).sum() / np.log(len(used)))
 
 
 class _Nothing:

@@ -6,7 +6,7 @@ import json
 import zipfile
 import zlib
 from collections.abc import Mapping
-from dataclasses import asdict, dataclass
+from dataclasses import dataclass
 from pathlib import Path
 from typing import Any, NamedTuple
 
@@ -21,7 +21,7 @@ from vprbench_encoders.layers import LayerReport, Rates
 __all__ = ["FORMAT", "Learned", "Stored", "read", "write"]
 
 # What the file is, and the version of its layout.
-FORMAT = "vprbench HSD dictionaries, version 1"
+FORMAT = "vprbench HSD dictionaries, version 2"
 
 
 class Learned(NamedTuple):
@@ -48,13 +48,13 @@ def write(path: Path, stored: Stored) -> None:
     Raises:
         DataError: it cannot be written there.
     """
-    reports = [asdict(report) for report in stored.reports]
+    reports = [{"atoms": report.atoms, "units": report.units, "seconds": report.seconds} for report in stored.reports]
     header = json.dumps({"format": FORMAT, "options": dict(stored.options), "reports": reports}, sort_keys=True)
     arrays = {
         f"s{number}_{name}": array
         for number, learned in enumerate(stored.layers, 1)
         for name, array in learned._asdict().items()
-    }
+    } | {f"s{number}_usage": report.usage for number, report in enumerate(stored.reports, 1)}
     try:
         with replacing(path) as temporary, temporary.open("wb") as file:
             np.savez(file, header=np.array(header), **arrays)
@@ -81,8 +81,11 @@ def _stored(archive: Mapping[str, NDArray[Any]]) -> Stored:
     header = json.loads(str(archive["header"]))
     if header["format"] != FORMAT:
         raise ValueError(header["format"])
-    reports = tuple(map(_report, header["reports"]))
-    layers = tuple(_learned(archive, f"s{number}_") for number in range(1, len(reports) + 1))
+    layers = tuple(_learned(archive, f"s{number}_") for number in range(1, len(header["reports"]) + 1))
+    reports = tuple(
+        _report(fields, archive[f"s{number}_usage"], len(layers[number - 1].units))
+        for number, fields in enumerate(header["reports"], 1)
+    )
     return Stored(header["options"], layers, reports)
 
 
@@ -95,5 +98,7 @@ def _learned(archive: Mapping[str, NDArray[Any]], prefix: str) -> Learned:
     return learned
 
 
-def _report(fields: Mapping[str, Any]) -> LayerReport:
-    return LayerReport(**{**fields, "atoms": Rates(*fields["atoms"]), "units": Rates(*fields["units"])})
+def _report(fields: Mapping[str, Any], usage: NDArray[Any], units: int) -> LayerReport:
+    if usage.dtype != np.float32 or usage.shape != (units,) or not ((usage >= 0) & (usage <= 1)).all():
+        raise ValueError("usage")
+    return LayerReport(**{**fields, "atoms": Rates(*fields["atoms"]), "units": Rates(*fields["units"])}, usage=usage)

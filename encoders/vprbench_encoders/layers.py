@@ -15,7 +15,7 @@ from typing import NamedTuple
 import numpy as np
 from jaxtyping import Float32, Int64
 
-from vprbench_encoders.homeostasis import usage_entropy
+from vprbench_encoders.homeostasis import usage, usage_entropy
 from vprbench_encoders.matching_pursuit import Selection, SparseCode, by_correlation, pursue, reconstruction_rate
 from vprbench_encoders.pooling import max_pool, pooling_cells
 from vprbench_encoders.som import KohonenMap
@@ -37,21 +37,26 @@ class Rates(NamedTuple):
     held_out: float
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class LayerReport:
     """What a layer has learned.
 
     Attributes:
         atoms: rates of the dictionary as it was learned.
         units: rates of the map's units, which code from then on.
-        entropy: how evenly the units are used by training patches, 0..1.
+        usage: (units,), the share of training patches that each unit takes part in.
         seconds: that learning and ordering took.
     """
 
     atoms: Rates
     units: Rates
-    entropy: float
+    usage: Float32[np.ndarray, " units"]
     seconds: float
+
+    @property
+    def entropy(self) -> float:
+        """How evenly the units are used, 0..1."""
+        return usage_entropy(self.usage)
 
 
 @dataclass(frozen=True)
@@ -150,7 +155,8 @@ class LayerRecipe:
         some = [kept[:: max(len(kept) // _REPORTED, 1)] for kept in (signals, held_out)]
         of_atoms = Rates(*(self._rate(kept, atoms, by_correlation(len(atoms))) for kept in some))
         of_units = Rates(*(self._rate(kept, layer.units, layer.selection) for kept in some))
-        return LayerReport(of_atoms, of_units, usage_entropy(layer.code(some[0]), len(layer.units)), seconds)
+        used = usage(layer.code(some[0]), len(layer.units)).astype(np.float32)
+        return LayerReport(of_atoms, of_units, used, seconds)
 
     def _rate(
         self,

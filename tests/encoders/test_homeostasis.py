@@ -23,9 +23,9 @@ def test_usage_counts_the_samples_that_an_atom_takes_part_in() -> None:
 
 
 def test_entropy_is_one_for_equal_use_and_zero_for_one_atom() -> None:
-    assert usage_entropy(sparse([[(0, 1.0)], [(1, 2.0)], [(2, 0.1)], [(3, 1.0)]]), 4) == pytest.approx(1)
-    assert usage_entropy(sparse([[(2, 1.0)], [(2, 2.0)]]), 4) == 0
-    assert usage_entropy(CODE, 4) == pytest.approx(
+    assert usage_entropy(usage(sparse([[(0, 1.0)], [(1, 2.0)], [(2, 0.1)], [(3, 1.0)]]), 4)) == pytest.approx(1)
+    assert usage_entropy(usage(sparse([[(2, 1.0)], [(2, 2.0)]]), 4)) == 0
+    assert usage_entropy(usage(CODE, 4)) == pytest.approx(
         -(3 / 6 * np.log(3 / 6) + 2 / 6 * np.log(2 / 6) + 1 / 6 * np.log(1 / 6)) / np.log(4)
     )
 
@@ -83,7 +83,7 @@ def test_homeostasis_evens_out_the_use_of_atoms_and_its_absence_does_not() -> No
         balance = homeostasis(kind, 60, 4, 0.05, 128)
         for _ in range(100):
             balance.update(pursue(signals, atoms, atoms @ atoms.T, 4, balance.selection))
-        entropy[kind] = usage_entropy(pursue(signals, atoms, atoms @ atoms.T, 4, balance.selection), 60)
+        entropy[kind] = usage_entropy(usage(pursue(signals, atoms, atoms @ atoms.T, 4, balance.selection), 60))
     assert entropy["none"] < 0.9
     assert entropy["heh"] > entropy["none"] + 0.06
     assert entropy["hap"] > entropy["none"] + 0.06
@@ -108,5 +108,5 @@ def test_a_learned_dictionary_is_used_more_evenly_with_homeostasis() -> None:
         learning = SparseHebbian(picks=4, homeostasis=kind, homeostasis_rate=0.05, rule="plain", rate=0.02, batch=300)
         atoms = learning.learn(signals, 60, np.random.default_rng(0))
         # Rules of competition end with learning: what is left is what the atoms themselves have become.
-        entropy[kind] = usage_entropy(learning.code(signals, atoms, by_correlation(60)), 60)
+        entropy[kind] = usage_entropy(usage(learning.code(signals, atoms, by_correlation(60)), 60))
     assert min(entropy["heh"], entropy["hap"]) > entropy["none"] + 0.1, entropy

@@ -153,6 +153,7 @@ def test_reports_tell_training_from_held_out_and_atoms_from_units() -> None:
         # A map of as many units as atoms blurs them.
         assert report.units.training < report.atoms.training
         assert 0 < report.entropy <= 1
+        assert report.usage.shape == (64,)
         assert report.seconds > 0
     # Noise has nothing in common with other noise but its spectrum.
     assert encoder.reports[0].atoms.held_out < encoder.reports[0].atoms.training

@@ -100,7 +100,7 @@ def rewritten(
 @pytest.mark.parametrize(
     "header",
     [
-        {"format": "vprbench HSD dictionaries, version 2"},
+        {"format": "vprbench HSD dictionaries, version 1"},
         {"options": {"size": 6, "colour": 1}},
         {"options": {"size": 1}},
         {"options": {"size": 6}},
@@ -122,6 +122,8 @@ def test_a_file_of_another_version_is_refused(saved: Path, tmp_path: Path, heade
         {"s2_mean": np.full(16, np.nan, np.float32)},
         {"s2_mean": np.zeros(16)},
         {"s1_tables": np.zeros((3, 4), np.float32)},
+        {"s1_usage": np.zeros(3, np.float32)},
+        {"s2_usage": np.full(64, 1.5, np.float32)},
         {"s2_units": np.zeros((64, 577), np.float32), "s2_mean": np.zeros(577, np.float32)},
         {"header": np.array("{")},
     ],
