@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import os
+from collections.abc import Iterator
 from pathlib import Path
 
 import cv2
@@ -18,6 +19,14 @@ settings.register_profile("vprbench", deadline=None)
 settings.load_profile("vprbench")
 
 REPOSITORY = Path(__file__).parents[1]
+
+
+@pytest.fixture(scope="session", autouse=True)
+def no_cache() -> Iterator[None]:
+    """Keep no fitted encoders from test to test, nor among those of whoever runs the tests."""
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setenv("VPRBENCH_CACHE", "none")
+        yield
 
 
 @pytest.fixture(scope="session")

@@ -32,17 +32,20 @@ Config: TypeAlias = str | Mapping[str, object]
 _NAME: dict[Kind, str] = {"encoder": "name", "localizer": "localizer"}
 
 
-def build(config: Config, seed: int = 0) -> Localizer:
-    """The agent that a configuration describes.
+def build(config: Config, seed: int = 0, encoder: Encoder | None = None) -> Localizer:
+    """The agent that a configuration describes, nothing of it fitted yet (`vprbench.fitted.fitted_agent` fits it too).
 
-    `seed` goes to every part that has a parameter `seed` which the configuration leaves open.
+    Args:
+        config: the agent.
+        seed: goes to every part that has a parameter `seed` which the configuration leaves open.
+        encoder: to look through instead of making the one that the configuration names: that one, fitted.
 
     Raises:
         ConfigError: naming the agent, the key and the nearest allowed name or value.
         PluginError: where a plug-in does not load, or what it makes lacks a method.
     """
     with _named(config, "localizer"):
-        return cast(Localizer, _parse("localizer", config).make(seed))
+        return cast(Localizer, _parse("localizer", config).make(seed, encoder))
 
 
 def build_encoder(config: Config, seed: int = 0) -> Encoder:
@@ -57,10 +60,10 @@ def validate(config: Config, kind: Kind = "localizer") -> None:
         _parse(kind, config)
 
 
-def is_seeded(config: Config) -> bool:
-    """Whether the seed matters to an agent: one that does not take it need run only once."""
-    with _named(config, "localizer"):
-        return _parse("localizer", config).is_seeded
+def is_seeded(config: Config, kind: Kind = "localizer") -> bool:
+    """Whether the seed matters to an agent or encoder: one that does not take it need run only once."""
+    with _named(config, kind):
+        return _parse(kind, config).is_seeded
 
 
 @dataclass(frozen=True)
@@ -82,11 +85,11 @@ class _Part:
         """Whether the seed matters to it or to its encoder."""
         return self.takes_seed or (self.encoder is not None and self.encoder.is_seeded)
 
-    def make(self, seed: int) -> object:
-        """The encoder or localizer itself."""
+    def make(self, seed: int, encoder: Encoder | None = None) -> object:
+        """The encoder or localizer itself; a localizer looks through `encoder` where one is given."""
         options = dict(self.options)
         if self.encoder:
-            options["encoder"] = self.encoder.make(seed)
+            options["encoder"] = self.encoder.make(seed) if encoder is None else encoder
         if self.takes_seed:
             options["seed"] = seed
         try:

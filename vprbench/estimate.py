@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 from statistics import median
 from time import perf_counter
@@ -9,14 +10,16 @@ from typing import Any
 
 import numpy as np
 
-from vprbench.agents import build
+from vprbench.agents import build, build_encoder, normalise
 from vprbench.catalogue import load_route
+from vprbench.fitting import TrainingFrames, fit
 from vprbench.observation import Drive, observe
 from vprbench.pool import Settings
 from vprbench.protocols import DescriptorLocalizer, Localizer
 from vprbench.recruiting import HALVINGS
 from vprbench.route import Route
 from vprbench.sweep import Job
+from vprbench.types import Observation
 
 __all__ = ["Estimate", "estimate"]
 
@@ -49,7 +52,6 @@ def estimate(job: Job, settings: Settings) -> Estimate:
         VprbenchError: the route's data are missing, or the agent cannot be built.
     """
     route = load_route(job.route, settings.data, settings.routes_file)
-    localizer = build(job.config, job.seed)
     training = sum(len(drive) for drive in route.training)
     for drive in (*route.training, route.learn, route.test):
         # Drawing or opening a drive takes time once, which must not be scaled up.
@@ -57,13 +59,24 @@ def estimate(job: Job, settings: Settings) -> Estimate:
     started = perf_counter()
     # Evenly spread frames, since a calibration may want places that lie apart.
     samples = [Drive(drive)[:: max(1, len(drive) // SAMPLE)] for drive in route.training]
-    localizer.fit(samples)
+    localizer = _fitted(job, samples)
     fitting = (perf_counter() - started) * training / max(1, sum(map(len, samples)))
     if isinstance(localizer, DescriptorLocalizer):
         work = _by_matrix(job, route, localizer)
     else:
         work = _by_playing(job, route, localizer)
     return Estimate(work.frames + training, work.pairs, work.seconds + fitting)
+
+
+def _fitted(job: Job, drives: Sequence[Sequence[Observation]]) -> Localizer:
+    """The agent, fitted on so little that it is of no other use."""
+    table, encoder = normalise(job.config), None
+    if "encoder" in table:
+        encoder = build_encoder(table["encoder"], job.seed)
+        fit(encoder, TrainingFrames(drives))
+    localizer = build(job.config, job.seed, encoder)
+    localizer.fit(drives)
+    return localizer
 
 
 def _by_matrix(job: Job, route: Route, localizer: DescriptorLocalizer[Any]) -> Estimate:

@@ -15,13 +15,13 @@ from queue import Empty, Queue
 from threading import Barrier, Thread
 from time import monotonic, sleep
 
-import cv2
 from pebble import ProcessExpired, ProcessPool
-from threadpoolctl import threadpool_limits
 
+from vprbench.encoder_store import EncoderStore
 from vprbench.plugins import one_line
 from vprbench.runner import Outcome, failure, run
 from vprbench.sweep import Job
+from vprbench.threads import one_thread
 
 __all__ = ["Progress", "Settings", "run_all"]
 
@@ -41,22 +41,25 @@ class Settings:
         timeout: seconds that a job may take, None for any.
         data: the data root, None for the default.
         routes_file: a TOML with the user's own routes.
+        store: of fitted encoders; None keeps none.
     """
 
     workers: int = 1
     timeout: float | None = None
     data: Path | None = None
     routes_file: Path | None = None
+    store: EncoderStore | None = None
 
 
 @dataclass(frozen=True)
 class Progress:
-    """How far a job has come in its present stage."""
+    """How far a job has come in its present stage, and what to say of it."""
 
     job: int
     stage: str
     done: int
     total: int
+    note: str = ""
 
 
 def run_all(todo: Sequence[Job], settings: Settings) -> Iterator[Progress | Outcome]:
@@ -117,17 +120,16 @@ def _end_with(parent: int) -> None:
 
 def _work(job: Job, number: int, settings: Settings, messages: Queue[Progress | Outcome]) -> None:
     """Run one job in a worker, on one thread: threads of several processes slow each other down."""
-    cv2.setNumThreads(1)
     last = -REPORT_EVERY
 
-    def report(stage: str, done: int, total: int) -> None:
+    def report(stage: str, done: int, total: int, note: str = "") -> None:
         nonlocal last
         if done in (0, total) or monotonic() - last >= REPORT_EVERY:
             last = monotonic()
-            messages.put(Progress(number, stage, done, total))
+            messages.put(Progress(number, stage, done, total, note))
 
-    with threadpool_limits(1):
-        for outcome in run(job, settings.data, settings.routes_file, report):
+    with one_thread():
+        for outcome in run(job, settings.data, settings.routes_file, report, settings.store):
             messages.put(outcome)
 
 

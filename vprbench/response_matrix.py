@@ -6,7 +6,7 @@ vigilance, every sampling distance, and the record and test phases.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from typing import Any, Generic, TypeVar
 
 import numpy as np
@@ -16,21 +16,15 @@ from vprbench.episode import Recording, winners
 from vprbench.observation import Drive
 from vprbench.protocols import DescriptorLocalizer
 from vprbench.recruiting import Odometer, bisect_vigilance, recruit_by_vigilance
+from vprbench.reporting import Report, silent
 from vprbench.route import Route
 
-__all__ = ["Report", "ResponseMatrix", "silent"]
+__all__ = ["ResponseMatrix"]
 
 Description = TypeVar("Description")
 
-# Called with what is being done, how much of it is done, and how much there is.
-Report = Callable[[str, int, int], None]
-
 # Columns computed at once: enough to spread the cost of a call, few enough to report progress.
 BLOCK = 16
-
-
-def silent(stage: str, done: int, total: int) -> None:
-    """A report to nobody."""
 
 
 class ResponseMatrix(Generic[Description]):

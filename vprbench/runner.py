@@ -8,18 +8,20 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
-from vprbench.agents import build, normalise
+from vprbench.agents import normalise
 from vprbench.bootstrap import INTERVAL_RULE, intervals
 from vprbench.catalogue import load_route
+from vprbench.encoder_store import EncoderStore
 from vprbench.env import RouteEnv
 from vprbench.episode import Recording, calibrate, judge, play
 from vprbench.errors import PluginError
+from vprbench.fitted import fitted_agent
 from vprbench.metrics import evaluate
-from vprbench.observation import Drive
 from vprbench.plugins import one_line
 from vprbench.protocols import DescriptorLocalizer, Localizer
 from vprbench.provenance import data_checksum, origins, versions
-from vprbench.response_matrix import Report, ResponseMatrix, silent
+from vprbench.reporting import Report, silent
+from vprbench.response_matrix import ResponseMatrix
 from vprbench.route import Route
 from vprbench.sweep import Cell, Job
 from vprbench.trace import Trace
@@ -47,12 +49,24 @@ class Outcome:
 
 
 def run(
-    job: Job, data: Path | None = None, routes_file: Path | None = None, report: Report = silent
+    job: Job,
+    data: Path | None = None,
+    routes_file: Path | None = None,
+    report: Report = silent,
+    store: EncoderStore | None = None,
 ) -> Iterator[Outcome]:
-    """Answer the cells of a job one by one; a cell that fails is an outcome with its error."""
+    """Answer the cells of a job one by one; a cell that fails is an outcome with its error.
+
+    Args:
+        job: its route, agent and cells.
+        data: the data root, None for the default.
+        routes_file: a TOML with the user's own routes.
+        report: is told how far the job has come.
+        store: where fitted encoders are kept; None for nowhere.
+    """
     try:
         route = load_route(job.route, data=data, routes=routes_file)
-        player = _prepare(job, route, report)
+        player = _prepare(job, route, report, store)
     except Exception as error:
         yield from (failure(job, cell, one_line(error)) for cell in job.cells)
         return
@@ -63,11 +77,9 @@ def run(
             yield failure(job, cell, one_line(error))
 
 
-def _prepare(job: Job, route: Route, report: Report) -> Player:
+def _prepare(job: Job, route: Route, report: Report, store: EncoderStore | None) -> Player:
     """Build and fit the agent; the fastest way to play the route with it."""
-    localizer = build(job.config, job.seed)
-    report("fit", 0, 1)
-    localizer.fit([Drive(drive) for drive in route.training])
+    localizer = fitted_agent(job.config, job.seed, route.training, store, report)
     if isinstance(localizer, DescriptorLocalizer):
         return _from_matrix(ResponseMatrix(route, localizer, report))
     return _frame_by_frame(route, localizer, report)

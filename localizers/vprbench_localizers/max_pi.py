@@ -21,7 +21,6 @@ from vprbench.types import Observation, Responses
 from vprbench_localizers.azimuth import agreeing_pairs, azimuths
 from vprbench_localizers.calibration import Calibration
 from vprbench_localizers.matching import match_pairs
-from vprbench_localizers.training_frames import TrainingFrames
 from vprbench_localizers.unit_memory import UnitMemory, View
 
 __all__ = ["MaxPi"]
@@ -63,7 +62,8 @@ class MaxPi:
     recruits. A place responds 1 to the very frame that it was made of, and 0 to a frame without landmarks.
 
     Args:
-        encoder: finds and compares the landmarks; one that also has `match_pairs` (see `PairEncoder`) is faster.
+        encoder: finds and compares the landmarks, fitted before; one that also has `match_pairs` (see `PairEncoder`)
+            is faster.
         vigilance: until `clear` sets another, 0..1 (our choice).
         azimuth_width_deg: width of the Gaussian agreement of azimuths, degrees (our choice); None or inf: all
             azimuths agree, so the heading plays no part.
@@ -107,8 +107,7 @@ class MaxPi:
         self.clear(vigilance)
 
     def fit(self, drives: Sequence[Sequence[Observation]]) -> None:
-        """Fit the encoder on every frame, calibrate the recognition threshold if none was given; forget places."""
-        self.encoder.fit(TrainingFrames(drives))
+        """Calibrate the recognition threshold through the fitted encoder, if none was given; forget places."""
         if self._calibrate:
             self.recognition_threshold = self._calibration.threshold(self.encoder, drives)
         self.clear(self.vigilance)

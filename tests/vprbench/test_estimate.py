@@ -60,8 +60,9 @@ class Fake:
 @pytest.fixture
 def fake(request: pytest.FixtureRequest, toy_route: Route, monkeypatch: pytest.MonkeyPatch) -> Fake:
     made = Fake(request.param)
+    for module_name in ("vprbench.estimate", "vprbench.fitted"):
+        monkeypatch.setattr(f"{module_name}.build", lambda config, seed, encoder=None: made)
     for module_name in ("vprbench.estimate", "vprbench.runner"):
-        monkeypatch.setattr(f"{module_name}.build", lambda config, seed: made)
         monkeypatch.setattr(f"{module_name}.load_route", lambda *names, **paths: toy_route)
     monkeypatch.setattr(module, "perf_counter", lambda: made.now)
     monkeypatch.setattr("vprbench.runner.normalise", lambda config: config)

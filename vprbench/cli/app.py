@@ -24,6 +24,10 @@ Data = Annotated[
     typer.Option(help="Folder that holds KITTI's dataset/. Default: $VPRBENCH_DATA, else the user data folder."),
 ]
 Routes = Annotated[Path | None, typer.Option(help="TOML file with routes of your own.")]
+Cache = Annotated[
+    Path | None,
+    typer.Option(help="Folder that keeps fitted encoders, or none. Default: $VPRBENCH_CACHE, else the user's cache."),
+]
 Out = Annotated[Path, typer.Option(help="Folder of the result tables.")]
 
 
@@ -42,6 +46,7 @@ def sweep(
     ] = None,
     overwrite: Annotated[bool, typer.Option("--overwrite", help="Measure again what is already there.")] = False,
     dry_run: Annotated[bool, typer.Option("--dry-run", help="Only say which cells would run, and how long.")] = False,
+    cache: Cache = None,
 ) -> None:
     """Measure every cell of a sweep (route x sampling distance x agent x seed) that is not yet in its table.
 
@@ -51,7 +56,7 @@ def sweep(
     """
     from vprbench.cli.sweeping import Request, sweep_command
 
-    request = Request(name, out, data, routes, jobs, filter, timeout, overwrite, dry_run)
+    request = Request(name, out, data, routes, jobs, filter, timeout, overwrite, dry_run, cache)
     raise typer.Exit(sweep_command(request))
 
 
@@ -67,11 +72,12 @@ def run(
     video: Annotated[
         Path | None, typer.Option(help="Film the test drive into this .mp4 file (needs the video extra).")
     ] = None,
+    cache: Cache = None,
 ) -> None:
     """Measure one agent on one route, and print its scores."""
     from vprbench.cli.single import Single, run_command
 
-    run_command(Single(route, agent, distance, seed, data, routes, trace, video))
+    run_command(Single(route, agent, distance, seed, data, routes, trace, video, cache))
 
 
 @app.command(epilog="Example: vprbench table runs/streets.csv --columns route --metric auc_all --format latex")

@@ -16,7 +16,7 @@ from vprbench.sweep import Job
 __all__ = ["SweepProgress"]
 
 # Where each stage of a job begins and ends on its bar. Comparing frames takes the longest, so it is most of it.
-STAGES = {"fit": (0.0, 0.05), "describe frames": (0.05, 0.3), "compare frames": (0.3, 0.95)}
+STAGES = {"fit": (0.0, 0.05), "fitted": (0.05, 0.05), "describe frames": (0.05, 0.3), "compare frames": (0.3, 0.95)}
 
 # A localizer that can only be played goes through these for each of its cells; where they begin.
 CELL_STAGES = {"calibrate": 0.0, "play": 0.8}
@@ -61,7 +61,10 @@ class SweepProgress:
         job = self.jobs[step.job]
         if step.job not in self._shown:
             self._shown[step.job] = self._bars.add_task(f"  {job}", total=1.0)
-        self._advance(step.job, _fraction(step, self._answered[step.job], len(job.cells)), f"  {job}: {step.stage}")
+        if step.stage == "fitted":
+            self._remark(job, step.note)
+        said = f"  {job}: {step.stage}" + (f" {step.note}" if step.note else "")
+        self._advance(step.job, _fraction(step, self._answered[step.job], len(job.cells)), said)
 
     def finish(self, outcome: Outcome) -> None:
         """Say that a cell is done, and how."""
@@ -74,6 +77,12 @@ class SweepProgress:
                 self._bars.remove_task(self._shown.pop(number))
         self._bars.update(self._whole, description=f"sweep: {self._finished} of {self._cells} cells")
         self.console.print(f"{self._finished:>4}/{self._cells}  {self._line(outcome)}", highlight=False, soft_wrap=True)
+
+    def _remark(self, job: Job, note: str) -> None:
+        """A line that stays; what many jobs have to say alike is told once, of the first."""
+        if note and note not in self._told:
+            self._told.add(note)
+            self.console.print(escape(f"           {job}: {note}"), highlight=False, soft_wrap=True)
 
     def _line(self, outcome: Outcome) -> str:
         """A finished cell in one line; an error that many cells share is told once."""

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import shutil
-import tomllib
 from collections.abc import Iterator
 from contextlib import contextmanager
 from dataclasses import dataclass
@@ -17,14 +16,16 @@ from gymnasium.wrappers import RecordVideo
 from rich.console import Console
 from rich.markup import escape
 
-from vprbench.agents import Config, build, label
+from vprbench.agents import label
 from vprbench.bootstrap import intervals
 from vprbench.catalogue import load_route
+from vprbench.cli.words import plugin_config
+from vprbench.encoder_store import EncoderStore
 from vprbench.env import RouteEnv
 from vprbench.episode import calibrate, judge, play
 from vprbench.errors import ConfigError
+from vprbench.fitted import fitted_agent
 from vprbench.metrics import evaluate
-from vprbench.observation import Drive
 from vprbench.protocols import DescriptorLocalizer, Localizer
 from vprbench.response_matrix import ResponseMatrix
 from vprbench.route import Route
@@ -46,18 +47,26 @@ class Single:
     routes: Path | None
     trace: Path | None
     video: Path | None
+    cache: Path | None
 
 
 def run_command(request: Single) -> None:
     """Play one cell through the environment and print its scores; faults are not caught, as in a sweep."""
-    console, config = Console(), _agent(request.agent)
+    console, config = Console(), plugin_config(request.agent, "agent")
     _check_output("--trace", request.trace, ".parquet")
     _check_output("--video", request.video, ".mp4")
     if request.video is not None and find_spec("moviepy") is None:
         raise ConfigError("--video needs moviepy: pip install 'vprbench[video]'")
-    route, localizer = load_route(request.route, request.data, request.routes), build(config, request.seed)
-    with Console(stderr=True).status("fit") as status:
-        localizer.fit([Drive(drive) for drive in route.training])
+    route, aside = load_route(request.route, request.data, request.routes), Console(stderr=True)
+    with aside.status("fit") as status:
+
+        def report(stage: str, done: int, total: int, note: str = "") -> None:
+            if stage == "fitted" and note:
+                aside.print(escape(note), highlight=False, soft_wrap=True)
+            status.update(escape(f"fit: {note}" if note else "fit"))
+
+        store = EncoderStore.under(request.cache)
+        localizer = fitted_agent(config, request.seed, route.training, store, report)
         status.update("find how densely to recruit")
         sampling = _sampling(localizer, route, request.distance)
         localizer.clear(sampling)
@@ -97,17 +106,6 @@ def _print_scores(trace: Trace, console: Console) -> None:
         low, high = spread.get(f"{name}_low"), spread.get(f"{name}_high")
         interval = "" if low is None else f"   95 % {low:.4f} .. {high:.4f}"
         console.print(f"{name:36} {value:9.4f}{interval}", highlight=False)
-
-
-def _agent(text: str) -> Config:
-    """An agent's configuration from the command line: a bare name, or the inside of a TOML table."""
-    if "=" not in text:
-        return text
-    try:
-        table: dict[str, Any] = tomllib.loads(f"agent = {{{text}}}")["agent"]
-    except tomllib.TOMLDecodeError as error:
-        raise ConfigError(f"agent {text!r}: not the inside of a TOML table: {error}") from error
-    return table
 
 
 class _Marked(gym.Wrapper[Observation, dict[str, Any], Observation, dict[str, Any]]):

@@ -14,6 +14,7 @@ from rich.markup import escape
 from vprbench.catalogue import catalogue, load_route
 from vprbench.cli.progress import SweepProgress
 from vprbench.data_root import data_root
+from vprbench.encoder_store import EncoderStore
 from vprbench.errors import DataError
 from vprbench.plan import Plan, plan
 from vprbench.pool import Progress, Settings, run_all
@@ -38,6 +39,7 @@ class Request:
     timeout: float | None
     overwrite: bool
     dry_run: bool
+    cache: Path | None
 
 
 def sweep_command(request: Request) -> int:
@@ -67,7 +69,8 @@ def sweep_command(request: Request) -> int:
 def _settings(request: Request, sweep: Sweep, question: Path) -> Settings:
     """How to run it: the command line's routes file wins over the TOML's."""
     own = request.routes or (question.parent / sweep.routes_file if sweep.routes_file else None)
-    return Settings(request.jobs or _cores(), request.timeout, request.data, own)
+    store = EncoderStore.under(request.cache)
+    return Settings(request.jobs or _cores(), request.timeout, request.data, own, store)
 
 
 def _cores() -> int:

@@ -22,8 +22,7 @@ class NearestView:
         self.clear(1.0)
 
     def fit(self, drives: Sequence[Sequence[Observation]]) -> None:
-        """Train the encoder on every frame."""
-        self.encoder.fit([observation["frame"] for drive in drives for observation in drive])
+        """Nothing of its own to learn."""
 
     def clear(self, sampling: float) -> None:
         """Forget every place; `sampling` is the vigilance from now on."""

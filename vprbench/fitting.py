@@ -1,4 +1,4 @@
-"""The frames of training drives, for an encoder to learn from."""
+"""Fitting an encoder: every training frame, on one thread, with progress where the encoder tells it."""
 
 from __future__ import annotations
 
@@ -7,9 +7,28 @@ from typing import overload
 
 import numpy as np
 
-from vprbench.types import Frame, Observation
+from vprbench.protocols import Encoder, Stepwise
+from vprbench.reporting import Report, silent
+from vprbench.threads import one_thread
+from vprbench.types import Frame, LearningStep, Observation
 
-__all__ = ["TrainingFrames"]
+__all__ = ["TrainingFrames", "fit"]
+
+
+def fit(encoder: Encoder, frames: Sequence[Frame], report: Report = silent) -> None:
+    """Let an encoder learn from frames; whatever runs beside it, it learns the same, to the bit."""
+    report("fit", 0, 1)
+    with one_thread():
+        if not isinstance(encoder, Stepwise):
+            encoder.fit(frames)
+            return
+        for step in encoder.learning(frames):
+            report("fit", step.done, step.total, _said(step))
+
+
+def _said(step: LearningStep) -> str:
+    """A step in a few words: "S1 120/200, reconstruction rate 0.54"."""
+    return f"{step.stage} {step.done}/{step.total}" + (f", {step.note}" if step.note else "")
 
 
 class TrainingFrames(Sequence[Frame]):
