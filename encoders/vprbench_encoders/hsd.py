@@ -10,7 +10,7 @@ from collections.abc import Iterator, Sequence
 from dataclasses import KW_ONLY, dataclass, field, fields
 from functools import partial
 from pathlib import Path
-from typing import Any, Literal
+from typing import TYPE_CHECKING, Any, Literal
 
 import numpy as np
 from jaxtyping import Float32, Int64
@@ -30,6 +30,9 @@ from vprbench_encoders.pooling import pooled_side
 from vprbench_encoders.som import KohonenMap
 from vprbench_encoders.sparse_hebbian import Rule, SparseHebbian
 from vprbench_encoders.whitening import CUTOFF
+
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
 
 __all__ = ["HSD", "hsd_12", "hsd_15", "hsd_15_30", "hsd_18", "hsd_21", "hsd_24", "hsd_30"]
 
@@ -169,6 +172,19 @@ class HSD:
     ) -> Float32[np.ndarray, " pairs"]:
         """The same as `match`, for chosen pairs only."""
         return match_pairs(queries, memory, query_index, memory_index, self.similarity)
+
+    def figures(self) -> dict[str, Figure]:
+        """Drawings, by file stem: the units of S1, what those of S2 look for, and how often each is used.
+
+        Raises:
+            PhaseError: nothing has been learned yet.
+            ConfigError: matplotlib is not installed.
+        """
+        if not self.layers:
+            raise PhaseError("hsd: there is nothing to draw yet: call fit(frames), or load saved dictionaries")
+        from vprbench_encoders.hsd_figures import DrawnHSD
+
+        return DrawnHSD(self.layers, self.reports, self._views.view, self.pool, self.topology).figures()
 
     def save(self, path: Path | str) -> None:
         """Write the options, the dictionaries and their reports to one .npz file, whole or not at all.
