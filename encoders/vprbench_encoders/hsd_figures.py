@@ -117,7 +117,7 @@ def _draw_usage(row: tuple[Axes, Axes], name: str, percent: Float32[np.ndarray, 
     bars.axhline(percent.mean(), color=GREY, linestyle="--", linewidth=0.8)
     bars.set(xlim=(0, len(percent)), xlabel=f"units of {name}, most used first", ylabel="share of views, %")
     unused = int((percent == 0).sum())
-    bars.set_title(f"{name}: entropy {entropy:.3f}, {unused or 'none'} of {len(percent)} never used")
+    bars.set_title(f"{name}: entropy {entropy:.3f}, {unused} of {len(percent)} never used")
     side = round(len(percent) ** 0.5)
     image = heat.imshow(percent.reshape(side, side), cmap="Blues", vmin=0)
     heat.set(xticks=[], yticks=[], title=f"{name}'s map")

@@ -100,7 +100,7 @@ def test_usage_is_drawn_in_order_and_on_the_map(encoder: HSD, figures: dict[str,
         assert np.asarray(axes.get_lines()[0].get_ydata())[0] == pytest.approx(100 * report.usage.mean())
         (image,) = heat.get_images()
         np.testing.assert_array_equal(image.get_array(), 100 * report.usage.reshape(7, 7))
-        unused = int((report.usage == 0).sum()) or "none"
+        unused = int((report.usage == 0).sum())
         assert axes.get_title(loc="left") == (
             f"S{number}: entropy {usage_entropy(report.usage):.3f}, {unused} of 49 never used"
         )

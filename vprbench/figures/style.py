@@ -12,7 +12,7 @@ from cycler import cycler
 from matplotlib import colors, style
 from matplotlib.figure import Figure
 
-__all__ = ["COLOURS", "GREY", "INK", "WIDTH", "agent_colours", "caption", "house_style", "new_figure"]
+__all__ = ["COLOURS", "GREY", "INK", "WIDTH", "agent_colours", "caption", "house_style", "mixed", "new_figure"]
 
 # M. Okabe, K. Ito, "Color universal design", 2008; their yellow, too faint on white, comes last.
 COLOURS = ("#0072B2", "#D55E00", "#009E73", "#CC79A7", "#56B4E9", "#E69F00", "#4D4D4D", "#F0E442")
@@ -87,11 +87,12 @@ def agent_colours(names: Iterable[str]) -> dict[str, str]:
     The first eight are the palette; the next eight are those darkened, then lightened, and so on anew.
     """
     shades = [(0.0, "black"), (0.45, "black"), (0.5, "white")]
-    wheel = [_mixed(colour, *shade) for shade, colour in product(shades, COLOURS)]
+    wheel = [mixed(colour, *shade) for shade, colour in product(shades, COLOURS)]
     return {name: wheel[place % len(wheel)] for place, name in enumerate(dict.fromkeys(names))}
 
 
-def _mixed(colour: str, share: float, other: str) -> str:
+def mixed(colour: str, share: float, other: str) -> str:
+    """A colour (#RRGGBB) with this share, 0..1, of another in it."""
     pairs = zip(colors.to_rgb(colour), colors.to_rgb(other), strict=True)
     red, green, blue = ((1 - share) * one + share * two for one, two in pairs)
     return colors.to_hex((red, green, blue)).upper()

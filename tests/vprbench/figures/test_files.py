@@ -40,6 +40,12 @@ def test_equal_figures_give_equal_bytes_whatever_the_users_style(tmp_path: Path)
     assert sorted(file.name for file in (tmp_path / "one").iterdir()) == ["figure.png", "figure.svg"]
 
 
+def test_a_figure_that_is_saved_twice_stays_as_it_was(tmp_path: Path) -> None:
+    figure = example()
+    first = [file.read_bytes() for file in save_figure(figure, tmp_path, "a")]
+    assert [file.read_bytes() for file in save_figure(figure, tmp_path, "a")] == first
+
+
 def test_the_picture_has_two_hundred_pixels_an_inch(tmp_path: Path) -> None:
     picture = cv2.imread(str(save_figure(example(), tmp_path, "a").png))
     assert picture is not None

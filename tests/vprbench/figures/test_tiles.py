@@ -38,6 +38,6 @@ def test_zero_is_mid_grey_and_beyond_the_reach_is_black_or_white() -> None:
         draw_tiles(axes, np.array([-9.0, -2, 0, 1]).reshape(4, 1, 1), reach=2.0)
     (image,) = axes.get_images()
     assert isinstance(image, AxesImage)
-    drawn = image.to_rgba(image.get_array())
+    drawn = image.to_rgba(np.asarray(image.get_array()))
     np.testing.assert_allclose(drawn[::2, ::2, 0].ravel(), [0, 0, 0.5, 0.75], atol=0.005)
     assert (drawn[1] == 0).all()
