@@ -16,7 +16,7 @@ import numpy as np
 from jaxtyping import Float32, Int64
 
 from vprbench.errors import ConfigError, DataError, PhaseError
-from vprbench.types import FRAME_HEIGHT, Frame, Landmarks
+from vprbench.types import FRAME_HEIGHT, Frame, Landmarks, LearningStep
 from vprbench_encoders import hsd_store
 from vprbench_encoders.code_match import Similarity, match_all, match_pairs
 from vprbench_encoders.focus import FocusDetector
@@ -29,6 +29,7 @@ from vprbench_encoders.patches import LocalView
 from vprbench_encoders.pooling import pooled_side
 from vprbench_encoders.som import KohonenMap
 from vprbench_encoders.sparse_hebbian import Rule, SparseHebbian
+from vprbench_encoders.stepwise import named
 from vprbench_encoders.whitening import CUTOFF
 
 if TYPE_CHECKING:
@@ -53,8 +54,8 @@ class HSD:
         training_frames: at most so many frames, evenly spaced, are learned from (our choice); bounds the memory.
         held_out: share of those, the last, that only the reports see (our choice).
         picks: N0 of S1 and of S2 (the paper's).
-        homeostasis, homeostasis_rate, bins, rule, rate, batch, steps, passes, rectified: see `SparseHebbian`. The
-            paper's rule in full is rule="plain", rate=0.02, batch=256, steps=4000, passes=40.
+        homeostasis, homeostasis_rate, bins, rule, rate, batch, steps, passes, tolerance, rectified: see
+            `SparseHebbian`. The paper's rule in full is rule="plain", rate=0.02, batch=256, steps=4000, passes=40.
         topology: whether the atoms are ordered on a map (the paper does).
         epochs, neighbourhood, final_neighbourhood: of that map; see `KohonenMap`.
         pool: width of the pooling windows (the paper's 2); 1: no pooling.
@@ -95,6 +96,7 @@ class HSD:
     batch: int = 1024
     steps: int = 200
     passes: int = 20
+    tolerance: float = 0.0
     rectified: bool = True
     topology: bool = True
     epochs: int = 60
@@ -131,17 +133,44 @@ class HSD:
         Raises:
             DataError: the frames have no focus points.
         """
+        for _ in self.learning(frames):
+            pass
+
+    def learning(self, frames: Sequence[Frame]) -> Iterator[LearningStep]:
+        """What `fit` does, step by step; what was learned before stays until it is done.
+
+        The stages are "local views", then "S1 dictionary", "S1 map", "C1", "S2 dictionary" and "S2 map".
+
+        Raises:
+            DataError: the frames have no focus points.
+        """
         random = np.random.default_rng(self.seed)
-        training, held_out = self._sampling.draw(self._views, frames, random)
+        inputs, held_out = yield from named("local views", self._sampling.drawing(self._views, frames, random))
         layers: list[TopologicalLayer] = []
         reports: list[LayerReport] = []
-        for recipe in self._recipes:
+        for number, recipe in enumerate(self._recipes, 1):
             if layers:
-                training, held_out = layers[-1].pooled(training), layers[-1].pooled(held_out)
-            layer, report = recipe.learn(training, held_out, random)
+                inputs = yield from named(f"C{number - 1}", layers[-1].pooling(inputs))
+                held_out = layers[-1].pooled(held_out)
+            layer, report = yield from recipe.follow(f"S{number}", inputs, held_out, random)
             layers.append(layer)
             reports.append(report)
         self.layers, self.reports = tuple(layers), tuple(reports)
+
+    def measures(self) -> dict[str, float]:
+        """What was learned, in numbers: `LayerReport.measures` of s1 and of s2, and the size of a signature.
+
+        Raises:
+            PhaseError: nothing has been learned yet.
+        """
+        if not self.layers:
+            raise PhaseError("hsd: there is nothing to measure yet: call fit(frames), or load what was saved")
+        found = {
+            f"s{number}_{name}": value
+            for number, report in enumerate(self.reports, 1)
+            for name, value in report.measures().items()
+        }
+        return found | {"signature_size": float(self.layers[-1].size)}
 
     def encode(self, frame: Frame) -> Landmarks:
         """The signatures of the frame's focus points.
@@ -260,6 +289,7 @@ class HSD:
             batch=self.batch,
             steps=self.steps,
             passes=self.passes,
+            tolerance=self.tolerance,
             rectified=self.rectified,
         )
         ordering = KohonenMap(

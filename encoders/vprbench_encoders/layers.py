@@ -9,6 +9,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from functools import cached_property
+from math import isfinite
 from time import perf_counter
 from typing import NamedTuple
 
@@ -20,6 +21,7 @@ from vprbench_encoders.matching_pursuit import Selection, SparseCode, by_correla
 from vprbench_encoders.pooling import max_pool, pooling_cells
 from vprbench_encoders.som import KohonenMap
 from vprbench_encoders.sparse_hebbian import SparseHebbian, unit_length
+from vprbench_encoders.stepwise import Progress, Stage, Work, finished, named
 
 __all__ = ["LayerRecipe", "LayerReport", "Rates", "TopologicalLayer", "prepared"]
 
@@ -58,6 +60,20 @@ class LayerReport:
         """How evenly the units are used, 0..1."""
         return usage_entropy(self.usage)
 
+    def measures(self) -> dict[str, float]:
+        """The report as numbers: the rates of the atoms, those of the map's units, usage entropy and seconds.
+
+        A rate is left out where nothing was held out to take it of.
+        """
+        rates = {
+            "rate": self.atoms.training,
+            "rate_held_out": self.atoms.held_out,
+            "map_rate": self.units.training,
+            "map_rate_held_out": self.units.held_out,
+        }
+        known = {name: rate for name, rate in rates.items() if isfinite(rate)}
+        return known | {"usage_entropy": self.entropy, "seconds": self.seconds}
+
 
 @dataclass(frozen=True)
 class TopologicalLayer:
@@ -79,6 +95,11 @@ class TopologicalLayer:
     picks: int
     rectified: bool
 
+    @property
+    def size(self) -> int:
+        """How many cells it answers with."""
+        return int(self.cells.max()) + 1
+
     @cached_property
     def _columns(self) -> Float32[np.ndarray, "units size"]:
         """The units in column order, in which a few signals are correlated with them in two thirds of the time."""
@@ -94,8 +115,16 @@ class TopologicalLayer:
 
     def pooled(self, inputs: Float32[np.ndarray, "samples size"]) -> Float32[np.ndarray, "samples cells"]:
         """The layer's answer to its inputs: their codes, pooled."""
-        chunks = [inputs[first : first + _CHUNK] for first in range(0, max(len(inputs), 1), _CHUNK)]
-        return np.concatenate([max_pool(self.code(prepared(chunk, self.mean)), self.cells) for chunk in chunks])
+        return finished(self.pooling(inputs))
+
+    def pooling(self, inputs: Float32[np.ndarray, "samples size"]) -> Work[Float32[np.ndarray, "samples cells"]]:
+        """What `pooled` does, some inputs at a time."""
+        answers = []
+        for first in range(0, max(len(inputs), 1), _CHUNK):
+            chunk = inputs[first : first + _CHUNK]
+            answers.append(max_pool(self.code(prepared(chunk, self.mean)), self.cells))
+            yield Progress(first + len(chunk), len(inputs))
+        return np.concatenate(answers)
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -120,19 +149,27 @@ class LayerRecipe:
     centred: bool
     equalised: bool
 
-    def learn(
+    def follow(
         self,
+        name: str,
         inputs: Float32[np.ndarray, "samples size"],
         held_out: Float32[np.ndarray, "others size"],
         random: np.random.Generator,
-    ) -> tuple[TopologicalLayer, LayerReport]:
-        """The layer that these inputs teach, and what it has learned, also measured on inputs held out."""
+    ) -> Stage[tuple[TopologicalLayer, LayerReport]]:
+        """The layer that these inputs teach, and what it has learned, also measured on inputs held out.
+
+        The stages of layer "S1" are "S1 dictionary", "S1 map" and, where it is equalised, "S1 homeostasis".
+        """
         start = perf_counter()
         mean = inputs.mean(axis=0) if self.centred else np.zeros(inputs.shape[1], np.float32)
         signals = prepared(inputs, mean)
-        atoms = self.learning.learn(signals, self.atoms, random)
-        units = unit_length(self.ordering.order(atoms, self.side, random)) if self.ordering else atoms
-        selection = self.learning.equalise(signals, units, random) if self.equalised else by_correlation(len(units))
+        units = atoms = yield from named(f"{name} dictionary", self.learning.learning(signals, self.atoms, random))
+        if self.ordering:
+            ordered = yield from named(f"{name} map", self.ordering.ordering(atoms, self.side, random))
+            units = unit_length(ordered)
+        selection = by_correlation(len(units))
+        if self.equalised:
+            selection = yield from named(f"{name} homeostasis", self.learning.equalising(signals, units, random))
         layer = self.layer(units, mean, selection)
         seconds = perf_counter() - start
         return layer, self._report(layer, atoms, signals, prepared(held_out, mean), seconds)

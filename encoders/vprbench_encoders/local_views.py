@@ -13,6 +13,7 @@ from vprbench.errors import ConfigError, DataError
 from vprbench.types import Frame
 from vprbench_encoders.focus import FocusDetector
 from vprbench_encoders.patches import LocalView, jittered
+from vprbench_encoders.stepwise import Progress, Work
 from vprbench_encoders.whitening import halve, whiten
 
 __all__ = ["LocalViews", "TrainingViews", "ViewSampling"]
@@ -75,8 +76,8 @@ class ViewSampling:
         if not 0 <= self.held_out < 1:
             raise ConfigError(f"held_out must be at least 0 and below 1, not {self.held_out}")
 
-    def draw(self, views: LocalViews, frames: Sequence[Frame], random: np.random.Generator) -> TrainingViews:
-        """The views of these frames, each of which is read once.
+    def drawing(self, views: LocalViews, frames: Sequence[Frame], random: np.random.Generator) -> Work[TrainingViews]:
+        """The views of these frames, each of which is read once, frame by frame.
 
         Raises:
             DataError: there is no focus point in any of them.
@@ -91,6 +92,7 @@ class ViewSampling:
                 training.append(views.cut(frame, jittered(points, self.jitter, self.copies, random)))
             else:
                 held_out.append(views.cut(frame, points))
+            yield Progress(place + 1, len(kept))
         if not sum(map(len, training)):
             raise DataError(f"none of {len(frames)} training frames has a focus point; give frames with texture")
         return TrainingViews(np.concatenate(training), np.concatenate(held_out))

@@ -14,6 +14,7 @@ import numpy as np
 from jaxtyping import Float32, Int64
 
 from vprbench.errors import ConfigError
+from vprbench_encoders.stepwise import Progress, Work, finished
 
 __all__ = ["KohonenMap", "nearest_units", "topographic_error"]
 
@@ -49,9 +50,17 @@ class KohonenMap:
         self, samples: Float32[np.ndarray, "samples size"], side: int, random: np.random.Generator
     ) -> Float32[np.ndarray, "units size"]:
         """The side x side units, row after row, that map these samples."""
+        return finished(self.ordering(samples, side, random))
+
+    def ordering(
+        self, samples: Float32[np.ndarray, "samples size"], side: int, random: np.random.Generator
+    ) -> Work[Float32[np.ndarray, "units size"]]:
+        """What `order` does, epoch by epoch."""
         units = samples[random.integers(len(samples), size=side * side)]
-        for sigma in np.geomspace(self.neighbourhood, self.final_neighbourhood, self.epochs):
-            units = _epoch(samples, units, side, float(sigma))
+        sigmas = np.geomspace(self.neighbourhood, self.final_neighbourhood, self.epochs)
+        for done, sigma in enumerate(sigmas.tolist(), 1):
+            units = _epoch(samples, units, side, sigma)
+            yield Progress(done, self.epochs)
         return units
 
 

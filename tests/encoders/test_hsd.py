@@ -9,9 +9,10 @@ import pytest
 from vprbench.agents import build_encoder
 from vprbench.checks.samples import flat_frame, textured_frame
 from vprbench.errors import ConfigError, DataError, PhaseError
-from vprbench.protocols import Encoder
-from vprbench.types import Frame
+from vprbench.protocols import Encoder, Measured, Stepwise, Storable
+from vprbench.types import Frame, LearningStep
 from vprbench_encoders.hsd import HSD
+from vprbench_encoders.stepwise import finished
 
 # Few steps of a small encoder: enough to tell options apart.
 QUICK: dict[str, Any] = {"size": 6, "steps": 6, "epochs": 10, "copies": 2}
@@ -55,8 +56,9 @@ def test_each_configuration_of_the_paper_has_a_name(name: str, size: int, map_si
     assert signatures(encoder).shape == (25, values)
 
 
-def test_it_is_an_encoder() -> None:
-    assert isinstance(HSD(), Encoder)
+@pytest.mark.parametrize("protocol", [Encoder, Measured, Stepwise, Storable])
+def test_it_is_an_encoder_that_learns_stepwise_and_can_be_stored_and_measured(protocol: type) -> None:
+    assert isinstance(HSD(), protocol)
 
 
 def test_a_signature_is_made_of_as_many_values_as_s2_picks_at_most(usual: HSD) -> None:
@@ -93,7 +95,7 @@ def test_units_have_unit_length(usual: HSD) -> None:
 
 def test_s2_codes_what_c1_has_beyond_its_mean(usual: HSD) -> None:
     first, second = usual.layers
-    views = usual._sampling.draw(usual._views, FRAMES, np.random.default_rng(0))
+    views = finished(usual._sampling.drawing(usual._views, FRAMES, np.random.default_rng(0)))
     np.testing.assert_allclose(second.mean, first.pooled(views.training).mean(axis=0), atol=1e-5)
     np.testing.assert_array_equal(first.mean, 0)
     np.testing.assert_array_equal(fitted(centred=False).layers[1].mean, 0)
@@ -118,6 +120,7 @@ def test_s2_codes_what_c1_has_beyond_its_mean(usual: HSD) -> None:
         {"batch": 100},
         {"steps": 3},
         {"passes": 1},
+        {"batch": 100, "steps": 20, "tolerance": 0.9},
         {"rectified": False},
         {"topology": False},
         {"epochs": 3},
@@ -168,6 +171,59 @@ def test_without_held_out_frames_their_rate_is_unknown() -> None:
     assert np.isnan(fitted(held_out=0.0).reports[0].atoms.held_out)
 
 
+def test_without_held_out_frames_there_are_no_measures_of_them() -> None:
+    names = fitted(held_out=0.0).measures().keys()
+    assert {"s1_rate", "s2_rate"} <= names
+    assert not any("held_out" in name for name in names)
+
+
+def test_measures_are_the_reports_layer_by_layer() -> None:
+    encoder = fitted(held_out=0.5, map_size=8)
+    measures = encoder.measures()
+    for layer, report in zip(("s1", "s2"), encoder.reports, strict=True):
+        assert (measures[f"{layer}_rate"], measures[f"{layer}_rate_held_out"]) == report.atoms
+        assert (measures[f"{layer}_map_rate"], measures[f"{layer}_map_rate_held_out"]) == report.units
+        assert measures[f"{layer}_usage_entropy"] == report.entropy
+        assert measures[f"{layer}_seconds"] == report.seconds
+    assert measures["signature_size"] == signatures(encoder).shape[1] == 16
+    assert len(measures) == 2 * 6 + 1
+
+
+def test_learning_tells_every_step_of_every_stage() -> None:
+    encoder = HSD(**QUICK, batch=100, equalised=True)
+    steps = list(encoder.learning(FRAMES))
+    counts: dict[str, list[LearningStep]] = {}
+    for step in steps:
+        counts.setdefault(step.stage, []).append(step)
+    # 6 frames of 25 points, twice each, a sixth of them held out... of so few, none.
+    totals = {"local views": 6, "S1 dictionary": 6, "S1 map": 10, "S1 homeostasis": 6, "C1": 300}
+    totals |= {"S2 dictionary": 6, "S2 map": 10, "S2 homeostasis": 6}
+    assert list(counts) == list(totals)
+    for stage, told in counts.items():
+        assert {step.total for step in told} == {totals[stage]}
+        assert told[-1].done == totals[stage]
+        assert [step.done for step in told] == sorted(step.done for step in told)
+        assert all(step.note.startswith("reconstruction rate 0.") for step in told if "dictionary" in stage)
+
+
+def test_learning_step_by_step_is_fitting(usual: HSD) -> None:
+    encoder = HSD(**QUICK)
+    for _ in encoder.learning(FRAMES):
+        with pytest.raises(PhaseError):
+            encoder.encode(FRAMES[0])
+    np.testing.assert_array_equal(signatures(encoder), signatures(usual))
+
+
+def test_interrupted_learning_leaves_the_encoder_as_it_was() -> None:
+    encoder = fitted()
+    before = signatures(encoder)
+    steps = encoder.learning(FRAMES[:2])
+    assert any(step.stage == "S2 map" for step in steps)
+    np.testing.assert_array_equal(signatures(encoder), before)
+    list(steps)
+    assert not np.array_equal(signatures(encoder), before)
+
+
 class Counted(Sequence[Frame]):
     """Frames that count how often each is read."""
 
@@ -198,6 +254,8 @@ def test_frames_without_focus_points_teach_nothing(frames: list[Frame]) -> None:
 def test_an_encoder_that_has_learned_nothing_says_so() -> None:
     with pytest.raises(PhaseError, match="fit"):
         HSD().encode(textured_frame(1))
+    with pytest.raises(PhaseError, match="fit"):
+        HSD().measures()
 
 
 @pytest.mark.parametrize(
@@ -219,6 +277,7 @@ def test_an_encoder_that_has_learned_nothing_says_so() -> None:
         ({"held_out": 1.0}, "held_out"),
         ({"steps": 0}, "steps"),
         ({"rate": 0.0}, "rate"),
+        ({"tolerance": 1.0}, "tolerance"),
         ({"epochs": 0}, "epochs"),
         ({"neighbourhood": 0.1}, "neighbourhood"),
         ({"points": 0}, "points"),

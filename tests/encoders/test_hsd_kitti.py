@@ -18,6 +18,7 @@ from vprbench_encoders.matching_pursuit import by_correlation, pursue, reconstru
 from vprbench_encoders.pooling import max_pool
 from vprbench_encoders.som import topographic_error
 from vprbench_encoders.sparse_hebbian import unit_length
+from vprbench_encoders.stepwise import finished
 
 pytestmark = pytest.mark.kitti
 
@@ -70,7 +71,7 @@ def test_s1_learns_oriented_band_pass_atoms(unordered: HSD) -> None:
 
 def test_learned_atoms_explain_unseen_places_better_than_patches_do(frames: list[Frame], unordered: HSD) -> None:
     layer = unordered.layers[0]
-    views = unordered._sampling.draw(unordered._views, frames, np.random.default_rng(0))
+    views = finished(unordered._sampling.drawing(unordered._views, frames, np.random.default_rng(0)))
     seen, unseen = (prepared(part, layer.mean) for part in views)
     patches = unit_length(seen[np.random.default_rng(0).integers(len(seen), size=144)])
     rates = [

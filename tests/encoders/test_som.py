@@ -121,3 +121,9 @@ def test_nearest_units_are_the_nearest() -> None:
 def test_impossible_options_are_refused_by_name(options: dict[str, float], named: str) -> None:
     with pytest.raises(ConfigError, match=named):
         KohonenMap(**options)  # type: ignore[arg-type]
+
+
+def test_ordering_tells_every_epoch() -> None:
+    samples = np.random.default_rng(0).standard_normal((50, 3)).astype(np.float32)
+    steps = KohonenMap(epochs=7).ordering(samples, 4, np.random.default_rng(0))
+    assert [(step.done, step.total) for step in steps] == [(done, 7) for done in range(1, 8)]

@@ -1,5 +1,6 @@
 from __future__ import annotations
 
+import tracemalloc
 from typing import Any
 
 import numpy as np
@@ -9,6 +10,7 @@ from numpy.typing import NDArray
 from vprbench.errors import ConfigError
 from vprbench_encoders.matching_pursuit import by_correlation, reconstruction_rate, residuals
 from vprbench_encoders.sparse_hebbian import Rule, SparseHebbian, hebbian_sums, unit_length
+from vprbench_encoders.stepwise import finished
 
 # Steps small enough for the plain rule to settle on so few signals.
 RULES: dict[Rule, dict[str, Any]] = {
@@ -72,17 +74,91 @@ def test_hebbian_sums_are_those_of_the_equation() -> None:
     for row, atoms, values in zip(dense, *code, strict=True):
         np.add.at(row, atoms, values)
     left = signals - dense @ truth
-    pull, energy = hebbian_sums(signals, truth, code)
+    pull, energy, rate = hebbian_sums(signals, truth, code)
     np.testing.assert_allclose(residuals(signals, truth, code), left, atol=1e-5)
     np.testing.assert_allclose(pull, dense.T @ left, atol=2e-3)
     np.testing.assert_allclose(energy, np.square(dense).sum(axis=0), rtol=1e-4)
+    assert rate == pytest.approx(reconstruction_rate(signals, truth, code), abs=1e-6)
+
+
+def test_the_rate_of_a_batch_is_that_of_its_signals_that_are_not_zero() -> None:
+    signals, truth = mixtures()
+    padded = np.concatenate([np.zeros((3, 25), np.float32), signals[:20]])
+    learning = SparseHebbian(picks=3)
+    code = learning.code(padded, truth, by_correlation(30))
+    assert hebbian_sums(padded, truth, code).rate == pytest.approx(reconstruction_rate(padded, truth, code), abs=1e-6)
+    assert np.isnan(hebbian_sums(padded[:3], truth, learning.code(padded[:3], truth, by_correlation(30))).rate)
+
+
+def test_learning_tells_every_batch_and_how_well_it_was_coded() -> None:
+    signals = mixtures()[0]
+    learning = SparseHebbian(picks=3, steps=5, batch=500, homeostasis="none")
+    steps = list(learning.learning(signals, 30, np.random.default_rng(7)))
+    assert [(step.done, step.total) for step in steps] == [(done, 5) for done in range(1, 6)]
+    random = np.random.default_rng(7)
+    start = unit_length(random.standard_normal((30, 25), np.float32))
+    batch = signals[random.permutation(len(signals))][:500]
+    rate = reconstruction_rate(batch, start, learning.code(batch, start, by_correlation(30)))
+    assert steps[0].note == f"reconstruction rate {rate:.2f}"
+    assert steps[-1].note > steps[0].note
+
+
+def converging(rule: Rule, tolerance: float, **options: Any) -> tuple[NDArray[np.float32], int]:  # noqa: ANN401
+    """The dictionary learned from passes of four batches, and how many batches it took."""
+    learning = SparseHebbian(picks=3, **{**RULES[rule], "steps": 400, "tolerance": tolerance, **options})
+    work, steps = learning.learning(mixtures()[0], 30, np.random.default_rng(0)), 0
+    while True:
+        try:
+            steps = next(work).done
+        except StopIteration as end:
+            return end.value, steps
+
+
+def test_the_plain_rule_ends_with_the_first_pass_that_is_no_better() -> None:
+    early, steps = converging("plain", 0.003)
+    assert 8 <= steps < 400 and steps % 4 == 0
+    whole, _ = converging("plain", 0.0, steps=steps)
+    np.testing.assert_array_equal(early, whole)
+    later = converging("plain", 0.001)[1]
+    assert steps < later < 400
+    assert converging("plain", 0.0)[1] == 400
+
+
+def test_the_scaled_rule_cools_within_a_pass_once_a_pass_is_no_better() -> None:
+    # At eta = 1 the atoms never settle: the rate stays near 0.67 until eta falls.
+    learning = SparseHebbian(picks=3, batch=500, steps=400, rate=1.0, passes=100, tolerance=0.01, homeostasis="none")
+    steps = list(learning.learning(mixtures()[0], 30, np.random.default_rng(0)))
+    rates = [float(step.note.split()[-1]) for step in steps]
+    assert [step.total for step in steps] == [400] * (len(steps) - 5) + [len(steps)] * 5
+    assert max(rates[:-4]) < 0.72 < 0.9 < rates[-1]
+
+
+def test_no_pass_is_judged_before_the_next_is_whole() -> None:
+    # Nothing is ever so much better: the second pass is the first that can end it.
+    assert converging("plain", 0.9)[1] == 8
+    assert converging("scaled", 0.9)[1] == 12
+    assert converging("plain", 0.9, steps=7)[1] == 7
+
+
+@pytest.mark.parametrize("tolerance", [0.0, 1e-9])
+def test_memory_does_not_grow_with_the_number_of_steps(tolerance: float) -> None:
+    signals = mixtures(atoms=60, size=400)[0]
+    peaks = []
+    for steps in (20, 200):
+        learning = SparseHebbian(picks=3, steps=steps, passes=1000, batch=100, tolerance=tolerance)
+        tracemalloc.start()
+        learning.learn(signals, 30, np.random.default_rng(0))
+        peaks.append(tracemalloc.get_traced_memory()[1])
+        tracemalloc.stop()
+    # A batch of 160 kB kept at each step would multiply it.
+    assert peaks[1] == pytest.approx(peaks[0], rel=0.03)
 
 
 def test_one_plain_step_moves_atoms_by_the_mean_of_what_they_left() -> None:
     signals = mixtures()[0][:40]
     learning = SparseHebbian(picks=3, rule="plain", rate=0.1, steps=1, batch=40, homeostasis="none")
     before = unit_length(np.random.default_rng(7).standard_normal((30, 25), np.float32))
-    pull, _ = hebbian_sums(signals, before, learning.code(signals, before, by_correlation(30)))
+    pull = hebbian_sums(signals, before, learning.code(signals, before, by_correlation(30))).pull
     expected = unit_length(before + 0.1 * pull / 40)
     np.testing.assert_allclose(learning.learn(signals, 30, np.random.default_rng(7)), expected, atol=1e-5)
 
@@ -130,7 +206,7 @@ def test_no_signal_is_seen_more_often_than_asked() -> None:
 def test_equalised_units_compete_by_their_own_distribution() -> None:
     signals, truth = mixtures()
     learning = SparseHebbian(picks=3, homeostasis_rate=0.2, **RULES["scaled"])
-    selection = learning.equalise(signals, truth, np.random.default_rng(0))
+    selection = finished(learning.equalising(signals, truth, np.random.default_rng(0)))
     assert selection.tables.shape == (30, 129)
     # Each of 30 atoms is in a tenth of the codes: its lowest coefficient lies above nine tenths of them.
     assert selection.tables[:, 1].mean() == pytest.approx(0.9, abs=0.03)
@@ -144,7 +220,16 @@ def test_a_row_of_zeros_has_no_length_to_scale() -> None:
 
 @pytest.mark.parametrize(
     "option",
-    [{"picks": 0}, {"steps": 0}, {"batch": 0}, {"bins": 0}, {"passes": 0}, {"rate": 0.0}, {"homeostasis_rate": 2.0}],
+    [
+        {"picks": 0},
+        {"steps": 0},
+        {"batch": 0},
+        {"bins": 0},
+        {"passes": 0},
+        {"rate": 0.0},
+        {"homeostasis_rate": 2.0},
+        {"tolerance": -0.1},
+    ],
 )
 def test_impossible_options_are_refused_by_name(option: dict[str, Any]) -> None:
     with pytest.raises(ConfigError, match=next(iter(option))):
