@@ -24,7 +24,7 @@ def preferred_patterns(
 def cells_combined(second: Float32[np.ndarray, "units2 cells"]) -> Float32[np.ndarray, " units2"]:
     """How many cells of C1 each unit of S2 looks for at once: 1 / sum of p^2, p being their shares of its energy."""
     energy = np.square(np.maximum(second, 0))
-    return np.square(energy.sum(axis=1)) / np.square(energy).sum(axis=1)
+    return np.square(energy.sum(axis=1)) / np.maximum(np.square(energy).sum(axis=1), np.finfo(np.float32).tiny)
 
 
 def expected_units(

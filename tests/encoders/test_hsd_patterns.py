@@ -79,8 +79,8 @@ def test_a_view_drawn_from_a_pattern_excites_the_cells_that_its_unit_looks_for()
 
 
 def test_cells_combined_counts_cells_of_equal_weight() -> None:
-    second = floats([[0, 3, 0, 0], [1, 1, -5, 0], [2, 2, 2, 2], [1, 2, 0, 0]])
-    np.testing.assert_allclose(cells_combined(second), [1, 2, 4, 1 / (0.2**2 + 0.8**2)], rtol=1e-6)
+    second = floats([[0, 3, 0, 0], [1, 1, -5, 0], [2, 2, 2, 2], [1, 2, 0, 0], [0, -1, 0, 0]])
+    np.testing.assert_allclose(cells_combined(second), [1, 2, 4, 1 / (0.2**2 + 0.8**2), 0], rtol=1e-6)
 
 
 @pytest.mark.parametrize("width", [1, 2, 3])
