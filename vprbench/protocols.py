@@ -99,8 +99,8 @@ class Drawn(Encoder, Protocol):
 class Localizer(Protocol):
     """The memory: learns places from observations and says how strongly each responds to a new one.
 
-    A localizer that uses an encoder takes it as its constructor argument `encoder`, and finds it fitted: whoever
-    calls `Localizer.fit` has fitted the encoder before, and the localizer never fits it.
+    A localizer that uses an encoder takes it as its constructor argument `encoder`, keeps it as its attribute
+    `encoder`, and finds it fitted: whoever calls `fit` has fitted the encoder before, and the localizer never does.
     """
 
     recruiting: ClassVar[Recruiting]

@@ -2,18 +2,17 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Sequence
-from functools import cached_property
-from typing import overload
+from collections.abc import Callable, Iterator
 
 import numpy as np
-from numpy.typing import NDArray
 
 from vprbench.checks.check import Check, Suite, expect
+from vprbench.checks.encoder_subject import EncoderSubject, LazyFrames, same_landmarks
+from vprbench.checks.learned import learned_suite
 from vprbench.checks.samples import flat_frame, textured_frame, training_frames
 from vprbench.plugins import missing
 from vprbench.protocols import Encoder
-from vprbench.types import FRAME_HEIGHT, FRAME_WIDTH, Frame, Landmarks
+from vprbench.types import FRAME_HEIGHT, FRAME_WIDTH, Landmarks
 
 __all__ = ["encoder_checks"]
 
@@ -26,130 +25,88 @@ def encoder_checks(factory: Callable[[], Encoder]) -> Iterator[Check]:
 
     The checks share one fitted encoder, so that an encoder that is slow to learn need not learn in each.
     """
-    return _suite.checks(_Subject(factory))
+    subject = EncoderSubject(factory)
+    yield from _suite.checks(subject)
+    yield from learned_suite.checks(subject)
 
 
-class _Subject:
-    """The encoder under test, fitted when first needed, and what it makes of two frames."""
-
-    def __init__(self, factory: Callable[[], Encoder]) -> None:
-        self.factory = factory
-
-    @cached_property
-    def encoder(self) -> Encoder:
-        return self.fit(training_frames())
-
-    @cached_property
-    def landmarks(self) -> list[Landmarks]:
-        return [self.encoder.encode(textured_frame(seed)) for seed in (1, 2)]
-
-    @property
-    def signatures(self) -> tuple[NDArray[np.float32], NDArray[np.float32]]:
-        """Those of the two frames, copied: what a match writes into them, no other check sees."""
-        one, other = self.landmarks
-        return one.signatures.copy(), other.signatures.copy()
-
-    def fit(self, frames: Sequence[Frame]) -> Encoder:
-        """A new encoder that has learned from these frames."""
-        encoder = self.factory()
-        encoder.fit(frames)
-        return encoder
-
-
-class _Lazy(Sequence[Frame]):
-    """Frames that are a sequence, but no list: as real drives are, which read each frame when asked."""
-
-    def __len__(self) -> int:
-        return len(training_frames())
-
-    @overload
-    def __getitem__(self, index: int) -> Frame: ...
-    @overload
-    def __getitem__(self, index: slice) -> list[Frame]: ...
-    def __getitem__(self, index: int | slice) -> Frame | list[Frame]:
-        return training_frames()[index]
-
-
-_suite = Suite[_Subject]()
-
-
-def _equal(one: Landmarks, other: Landmarks) -> bool:
-    return np.array_equal(one.signatures, other.signatures) and np.array_equal(one.points, other.points)
+_suite = Suite[EncoderSubject]()
 
 
 @_suite.add
-def _has_every_method(subject: _Subject) -> None:
+def _has_every_method(subject: EncoderSubject) -> None:
     lacks = missing("encoder", subject.factory())
     expect(not lacks, f"an Encoder has fit, encode and match; this one lacks {', '.join(lacks)}")
 
 
 @_suite.add
-def _fit_accepts_any_sequence(subject: _Subject) -> None:
+def _fit_accepts_any_sequence(subject: EncoderSubject) -> None:
     try:
-        subject.fit(_Lazy())
+        subject.fit(LazyFrames())
     except Exception as error:
         expect(False, f"fit takes any Sequence of frames, not lists only; it raised {error!r}")
 
 
 @_suite.add
-def _fit_is_repeatable(subject: _Subject) -> None:
+def _fit_is_repeatable(subject: EncoderSubject) -> None:
     again = subject.fit(training_frames()).encode(textured_frame(1))
-    expect(_equal(again, subject.landmarks[0]), "the same seed and frames fit the same encoder: draw from the seed")
+    same = same_landmarks(again, subject.landmarks[0])
+    expect(same, "the same seed and frames fit the same encoder: draw from the seed")
 
 
 @_suite.add
-def _gives_one_point_a_signature(subject: _Subject) -> None:
+def _gives_one_point_a_signature(subject: EncoderSubject) -> None:
     for signatures, points in subject.landmarks:
         asked = signatures.ndim == 2 and points.shape == (len(signatures), 2)
         expect(asked, f"signatures are (n, size) and points (n, 2), not {signatures.shape} and {points.shape}")
 
 
 @_suite.add
-def _gives_float32(subject: _Subject) -> None:
+def _gives_float32(subject: EncoderSubject) -> None:
     for signatures, points in subject.landmarks:
         kinds = {str(signatures.dtype), str(points.dtype)}
         expect(kinds == {"float32"}, f"signatures and points are float32, not {' and '.join(sorted(kinds))}")
 
 
 @_suite.add
-def _gives_finite_signatures(subject: _Subject) -> None:
+def _gives_finite_signatures(subject: EncoderSubject) -> None:
     for signatures, _ in subject.landmarks:
         expect(bool(np.isfinite(signatures).all()), "signatures are finite; these hold NaN or infinity")
 
 
 @_suite.add
-def _gives_contiguous_arrays(subject: _Subject) -> None:
+def _gives_contiguous_arrays(subject: EncoderSubject) -> None:
     for arrays in subject.landmarks:
         expect(all(a.flags.c_contiguous for a in arrays), "signatures and points are C-contiguous: copy what is a view")
 
 
 @_suite.add
-def _gives_points_inside_the_frame(subject: _Subject) -> None:
+def _gives_points_inside_the_frame(subject: EncoderSubject) -> None:
     for _, points in subject.landmarks:
         inside = (points >= 0) & (points <= (FRAME_WIDTH - 1, FRAME_HEIGHT - 1))
         expect(bool(inside.all()), f"points are columns 0..{FRAME_WIDTH - 1} and rows 0..{FRAME_HEIGHT - 1}, in pixels")
 
 
 @_suite.add
-def _finds_landmarks_in_texture(subject: _Subject) -> None:
+def _finds_landmarks_in_texture(subject: EncoderSubject) -> None:
     for signatures, _ in subject.landmarks:
         expect(len(signatures) > 0, "a frame full of texture gives at least one landmark")
 
 
 @_suite.add
-def _gives_signatures_of_one_size(subject: _Subject) -> None:
+def _gives_signatures_of_one_size(subject: EncoderSubject) -> None:
     sizes = {landmarks.signatures.shape[-1] for landmarks in subject.landmarks}
     expect(len(sizes) == 1, f"signatures have one size whatever the frame, not {sorted(sizes)}")
 
 
 @_suite.add
-def _tells_frames_apart(subject: _Subject) -> None:
+def _tells_frames_apart(subject: EncoderSubject) -> None:
     one, other = (landmarks.signatures for landmarks in subject.landmarks)
     expect(not np.array_equal(one, other), "frames that show different things give different signatures")
 
 
 @_suite.add
-def _accepts_a_uniform_frame(subject: _Subject) -> None:
+def _accepts_a_uniform_frame(subject: EncoderSubject) -> None:
     size = subject.landmarks[0].signatures.shape[-1]
     for grey in (0, 128, 255):
         try:
@@ -161,30 +118,31 @@ def _accepts_a_uniform_frame(subject: _Subject) -> None:
 
 
 @_suite.add
-def _encodes_repeatably(subject: _Subject) -> None:
+def _encodes_repeatably(subject: EncoderSubject) -> None:
     again = subject.encoder.encode(textured_frame(1))
-    expect(_equal(again, subject.landmarks[0]), "the same frame gives the same landmarks, whatever was encoded between")
+    same = same_landmarks(again, subject.landmarks[0])
+    expect(same, "the same frame gives the same landmarks, whatever was encoded between")
 
 
 @_suite.add
-def _leaves_the_frame_alone(subject: _Subject) -> None:
+def _leaves_the_frame_alone(subject: EncoderSubject) -> None:
     frame = textured_frame(1)
     subject.encoder.encode(frame)
     expect(np.array_equal(frame, textured_frame(1)), "encode does not write into the frame")
 
 
 @_suite.add
-def _gives_landmarks_their_own_memory(subject: _Subject) -> None:
+def _gives_landmarks_their_own_memory(subject: EncoderSubject) -> None:
     frame = textured_frame(1)
     landmarks = subject.encoder.encode(frame)
     before = Landmarks(landmarks.signatures.copy(), landmarks.points.copy())
     frame[:] = 0
     subject.encoder.encode(textured_frame(2))
-    expect(_equal(landmarks, before), "landmarks stay as they are when the frame changes or another is encoded")
+    expect(same_landmarks(landmarks, before), "landmarks stay as they are when the frame changes or another is encoded")
 
 
 @_suite.add
-def _match_gives_float32_points_by_units(subject: _Subject) -> None:
+def _match_gives_float32_points_by_units(subject: EncoderSubject) -> None:
     one, other = subject.signatures
     for memory in (other, other[:1]):
         matches = subject.encoder.match(one, memory)
@@ -193,7 +151,7 @@ def _match_gives_float32_points_by_units(subject: _Subject) -> None:
 
 
 @_suite.add
-def _match_accepts_no_landmarks(subject: _Subject) -> None:
+def _match_accepts_no_landmarks(subject: EncoderSubject) -> None:
     some, _ = subject.signatures
     for queries, memory in ((some[:0], some), (some, some[:0]), (some[:0], some[:0])):
         shape = len(queries), len(memory)
@@ -207,7 +165,7 @@ def _match_accepts_no_landmarks(subject: _Subject) -> None:
 
 
 @_suite.add
-def _match_lies_in_0_1(subject: _Subject) -> None:
+def _match_lies_in_0_1(subject: EncoderSubject) -> None:
     one, other = subject.signatures
     matches = subject.encoder.match(one, other)
     asked = bool(((matches >= -ROUNDING) & (matches <= 1 + ROUNDING)).all())
@@ -215,14 +173,14 @@ def _match_lies_in_0_1(subject: _Subject) -> None:
 
 
 @_suite.add
-def _match_of_equals_is_1(subject: _Subject) -> None:
+def _match_of_equals_is_1(subject: EncoderSubject) -> None:
     some, _ = subject.signatures
     away = float(np.abs(np.diag(subject.encoder.match(some, some)) - 1).max(initial=0))
     expect(away <= ROUNDING, f"a signature matches itself with 1; this one is {away:g} away from it")
 
 
 @_suite.add
-def _match_compares_pair_by_pair(subject: _Subject) -> None:
+def _match_compares_pair_by_pair(subject: EncoderSubject) -> None:
     together = subject.encoder.match(*subject.signatures)
     one, other = subject.signatures
     apart = subject.encoder.match(one[:1], other[:1])
@@ -231,7 +189,7 @@ def _match_compares_pair_by_pair(subject: _Subject) -> None:
 
 
 @_suite.add
-def _match_leaves_its_arguments_alone(subject: _Subject) -> None:
+def _match_leaves_its_arguments_alone(subject: EncoderSubject) -> None:
     one, other = subject.signatures
     subject.encoder.match(one, other)
     kept = [np.array_equal(now, was) for now, was in zip((one, other), subject.signatures, strict=True)]

@@ -3,17 +3,19 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Mapping, Sequence
+from contextlib import ExitStack
 from copy import deepcopy
 from functools import cached_property
 from typing import Any, get_args
+from unittest.mock import patch
 
 import numpy as np
 from jaxtyping import Float32
 
 from vprbench.checks.check import Check, DoesNotApply, Suite, expect
-from vprbench.checks.samples import drive, flat_frame, training_drives
+from vprbench.checks.samples import drive, flat_frame, training_drives, training_frames
 from vprbench.plugins import missing
-from vprbench.protocols import DescriptorLocalizer, Localizer, Recruiting
+from vprbench.protocols import DescriptorLocalizer, Encoder, Localizer, Recruiting
 from vprbench.types import Observation
 
 __all__ = ["localizer_checks"]
@@ -57,8 +59,10 @@ class _Subject:
         return drive(7)
 
     def fit(self) -> Localizer:
-        """A new localizer that has trained off the road."""
+        """A new localizer that has trained off the road, through an encoder that did so before."""
         localizer = self.factory()
+        if (encoder := _encoder(localizer)) is not None:
+            encoder.fit(training_frames())
         localizer.fit(training_drives())
         return localizer
 
@@ -75,6 +79,12 @@ class _Subject:
 
 
 _suite = Suite[_Subject]()
+
+
+def _encoder(localizer: Localizer) -> Encoder | None:
+    """What a localizer looks through, if anything."""
+    encoder = getattr(localizer, "encoder", None)
+    return encoder if isinstance(encoder, Encoder) else None
 
 
 def _answers(localizer: Localizer, observations: Sequence[Observation]) -> Float32[np.ndarray, "queries places"]:
@@ -108,6 +118,22 @@ def _fit_is_repeatable(subject: _Subject) -> None:
         again.learn(place)
     same = np.array_equal(_answers(again, subject.drive), before)
     expect(same, "the same seed and drives fit the same localizer: draw from the seed")
+
+
+@_suite.add
+def _leaves_its_encoder_as_it_is(subject: _Subject) -> None:
+    localizer = subject.factory()
+    encoder = _encoder(localizer)
+    if encoder is None:
+        raise DoesNotApply("it has no encoder, which is optional")
+    encoder.fit(training_frames())
+    with ExitStack() as stack:
+        # The class is watched, since not every object takes new attributes.
+        names = [name for name in ("fit", "learning") if hasattr(type(encoder), name)]
+        watched = [stack.enter_context(patch.object(type(encoder), name)) for name in names]
+        localizer.fit(training_drives())
+    asked = "the encoder is fitted before: fit what is the localizer's own, not the encoder"
+    expect(not any(method.called for method in watched), asked)
 
 
 @_suite.add

@@ -12,7 +12,7 @@ import numpy.typing as npt
 import pytest
 
 from vprbench.agents import build_encoder
-from vprbench.checks import encoder_checks
+from vprbench.checks import DoesNotApply, encoder_checks
 from vprbench.checks.samples import textured_frame
 from vprbench.protocols import Encoder
 from vprbench.types import Frame, Landmarks
@@ -234,6 +234,8 @@ def failing(factory: Callable[[], Encoder]) -> set[str]:
     for check in encoder_checks(factory):
         try:
             check.run()
+        except DoesNotApply:
+            continue
         except Exception:
             failed.add(check.name)
     return failed
@@ -244,7 +246,8 @@ def test_a_good_encoder_passes() -> None:
 
 
 def test_every_check_has_its_wrong_encoder() -> None:
-    assert [check.name for check in encoder_checks(Good)] == list(WRONG)
+    # The four that follow are about what is optional; see test_learned.py.
+    assert [check.name for check in encoder_checks(Good)][:-4] == list(WRONG)
 
 
 @pytest.mark.parametrize("name", list(WRONG)[1:])

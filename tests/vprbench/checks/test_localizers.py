@@ -32,6 +32,7 @@ class Good:
 
     def __init__(self) -> None:
         self.good = build({"localizer": "nearest-view", "encoder": "mean-patch"})
+        self.encoder = self.good.encoder  # type: ignore[attr-defined]
 
     def fit(self, drives: Sequence[Sequence[Observation]]) -> None:
         self.good.fit(drives)
@@ -85,6 +86,22 @@ class FitsDifferentlyEachTime(Good):
 
     def respond(self, observation: Observation) -> Responses:
         return super().respond(observation) * self.scale
+
+
+class RefitsItsEncoder(Good):
+    def fit(self, drives: Sequence[Sequence[Observation]]) -> None:
+        super().fit(drives)
+        self.encoder.fit([observation["frame"] for drive in drives for observation in drive])
+
+
+class FollowsItsEncodersLearning(Good):
+    def __init__(self) -> None:
+        self.good = build({"localizer": "nearest-view", "encoder": "typical"})
+        self.encoder = self.good.encoder  # type: ignore[attr-defined]
+
+    def fit(self, drives: Sequence[Sequence[Observation]]) -> None:
+        super().fit(drives)
+        list(self.encoder.learning([drives[0][0]["frame"]]))
 
 
 class AnswersWithoutPlaces(Good):
@@ -250,6 +267,8 @@ class LearnsAtAnotherVigilance(GoodDescriptor):
 WRONG: list[tuple[str, Callable[[], Localizer], set[str]]] = [
     ("says-what-recruits", RecruitsByMood, {"recruits-as-often-as-asked"}),
     ("fit-is-repeatable", FitsDifferentlyEachTime, set()),
+    ("leaves-its-encoder-as-it-is", RefitsItsEncoder, set()),
+    ("leaves-its-encoder-as-it-is", FollowsItsEncodersLearning, set()),
     ("is-silent-without-places", AnswersWithoutPlaces, set()),
     ("numbers-places-in-order", CountsFromOne, set()),
     ("numbers-places-in-order", CountsInNumpy, set()),
