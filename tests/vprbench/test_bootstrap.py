@@ -7,10 +7,11 @@ from unittest.mock import create_autospec
 
 import numpy as np
 import pytest
+from scipy import stats
 from sklearn import metrics as sk
 
 from vprbench import bootstrap
-from vprbench.bootstrap import INTERVAL_METRICS, block_frames, intervals, resample
+from vprbench.bootstrap import INTERVAL_METRICS, block_frames, intervals, resample, student_quantile, widening
 from vprbench.errors import ConfigError
 from vprbench.trace import Trace
 
@@ -152,3 +153,25 @@ def test_blocks_cover_the_truth_of_a_correlated_drive_where_single_frames_do_not
 def test_single_frames_cover_the_truth_of_an_uncorrelated_drive() -> None:
     right = np.random.default_rng(2).random((150, 200)) < 0.7
     assert coverage(right, 0.7, block_m=1.0) > 0.9
+
+
+@pytest.mark.parametrize("degrees", [1.0, 2.0, 3.7, 9.0, 30.0, 400.0])
+@pytest.mark.parametrize("share", [0.5, 0.6, 0.975, 0.9995])
+def test_students_quantiles_are_scipys(share: float, degrees: float) -> None:
+    assert student_quantile(share, degrees) == pytest.approx(stats.t.ppf(share, degrees), rel=1e-6, abs=1e-6)
+
+
+def test_the_widening_makes_independent_blocks_exact() -> None:
+    """Of means of few normal values, the widened normal interval holds the truth 95 times in 100."""
+    values = np.random.default_rng(6).standard_normal((20_000, 6))
+    # What a bootstrap of single values converges to: the spread divides by their number.
+    reach = 1.959964 * values.std(axis=1, ddof=0) / np.sqrt(6)
+    away = np.abs(values.mean(axis=1))
+    assert (away <= widening([6.0]) * reach).mean() == pytest.approx(0.95, abs=0.006)
+    assert (away <= reach).mean() < 0.89
+
+
+def test_the_widening_ends_with_many_blocks_and_has_no_answer_for_one() -> None:
+    assert widening([1000.0]) == pytest.approx(1.0, abs=0.003)
+    assert widening([10.0, 10.0]) == pytest.approx(np.sqrt(20 / 18) * stats.t.ppf(0.975, 18) / stats.norm.ppf(0.975))
+    assert np.isnan(widening([10.0, 1.9]))

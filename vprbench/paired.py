@@ -1,0 +1,136 @@
+"""Which of two agents is better, and how sure that is: paired differences on the same queries, from stored traces.
+
+Two agents on one route answer the same queries, and hard stretches of road are hard for both. So each resample scores
+both on the same stretches and dictionary seeds (`vprbench.paired_scores`) and takes the difference: what they have in
+common cancels. An agent's score is the mean over its cells (route and sampling distance).
+
+The interval is that of the percentiles, widened for the small number of blocks (`bootstrap.widening`).
+docs/statistics.md says how often such intervals held the truth.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from itertools import combinations
+
+import numpy as np
+import pandas as pd
+
+from vprbench.bootstrap import BLOCK_M, LEVEL, RESAMPLES, check_settings, widening
+from vprbench.errors import ConfigError, DataError, nearest
+from vprbench.paired_scores import PAIRED_METRICS, Draws, Drive, Place, Scored, score_cells
+from vprbench.results import ResultTable
+from vprbench.sweep import Cell
+from vprbench.trace import Trace
+
+__all__ = ["PAIRED_METRICS", "VERDICTS", "compare"]
+
+# What an interval says: it lies above 0, below 0, holds 0, or there is none.
+VERDICTS = ("better", "worse", "no difference shown", "too short to say")
+
+
+def compare(
+    answers: ResultTable | Mapping[Cell, Trace],
+    metric: str = "auc_all",
+    *,
+    reference: str | None = None,
+    agents: Sequence[str] | None = None,
+    block_m: float = BLOCK_M,
+    resamples: int = RESAMPLES,
+    level: float = LEVEL,
+    seed: int = 0,
+) -> pd.DataFrame:
+    """Differences between agents, over the cells that both answered, one row a pair, the largest first.
+
+    The columns: metric, agent, reference, difference (of the first less the second), low and high (its interval),
+    cells (route and distance) and queries (over all routes) that it rests on, seeds and reference_seeds, and the
+    verdict, one of `VERDICTS`. Intervals are of one pair each: of 20 pairs of equal agents about one is found to
+    differ. For n pairs at once, ask for a level of 1 - 0.05 / n (Bonferroni).
+
+    Args:
+        answers: a result table with its traces, or traces by their cells.
+        metric: one of `PAIRED_METRICS`.
+        reference: with which each other agent is compared; each pair once where there is none.
+        agents: which to compare; all by default.
+        block_m: length of a block, metres of road (our choice).
+        resamples: how many are drawn (our choice).
+        level: of the intervals.
+        seed: of the drawing.
+
+    Raises:
+        ConfigError: an unknown metric or agent, fewer than two agents, or a senseless setting.
+        DataError: two agents have no cell in common, a trace cannot be read, or two traces of a route are not of
+            the same queries.
+    """
+    check_settings(block_m, resamples, level)
+    if metric not in PAIRED_METRICS:
+        raise ConfigError(f"compare: no metric {metric!r}: {nearest(metric, PAIRED_METRICS)}")
+    traces = _stored(answers) if isinstance(answers, ResultTable) else answers
+    pairs = _pairs(list(dict.fromkeys(cell.agent for cell in traces)), reference, agents)
+    wanted = {agent for pair in pairs for agent in pair}
+    asked = {cell: trace for cell, trace in traces.items() if cell.agent in wanted}
+    scored, drives = score_cells(asked, metric, block_m, resamples, seed)
+    rows = [_row(pair, scored, drives, level) for pair in pairs]
+    table = pd.DataFrame([{"metric": metric, **row} for row in rows])
+    return table.sort_values("difference", ascending=False, kind="stable", ignore_index=True)
+
+
+def _stored(table: ResultTable) -> dict[Cell, Trace]:
+    """The traces of all finished cells of a table."""
+    rows = [row for row in table.frame().to_dict("records") if row["status"] == "ok"]
+    cells = [
+        Cell(str(row["route"]), str(row["agent"]), float(row["sampling_distance_m"]), int(row["seed"])) for row in rows
+    ]
+    return {cell: table.trace(cell.id) for cell in cells}
+
+
+def _pairs(present: list[str], reference: str | None, agents: Sequence[str] | None) -> list[tuple[str, str]]:
+    """The pairs to compare: each other agent with the reference, or each with each."""
+    asked = list(dict.fromkeys(agents or present))
+    for agent in [*asked, *([reference] if reference is not None else [])]:
+        if agent not in present:
+            raise ConfigError(f"compare: no finished cell of agent {agent!r}: {nearest(agent, present)}")
+    others = [agent for agent in asked if agent != reference]
+    pairs = [(agent, reference) for agent in others] if reference is not None else list(combinations(asked, 2))
+    if not pairs:
+        raise ConfigError("compare: there is only one agent; it takes two to differ")
+    return pairs
+
+
+def _row(
+    pair: tuple[str, str], scored: Mapping[str, Mapping[Place, Scored]], drives: Mapping[str, Drive], level: float
+) -> dict[str, object]:
+    """The row of one pair."""
+    one, other = (scored[agent] for agent in pair)
+    common = [place for place in one if place in other]
+    if not common:
+        raise DataError(f"compare: {pair[0]} and {pair[1]} have no finished cell in common; run the sweep again")
+    routes = {route: drives[route] for route, _ in common}
+    draws = np.mean([one[place].draws - other[place].draws for place in common], axis=0)
+    low, high = _interval(draws, widening([drive.blocks for drive in routes.values()], level), level)
+    return {
+        "agent": pair[0],
+        "reference": pair[1],
+        "difference": float(draws[0]),
+        "low": low,
+        "high": high,
+        "cells": len(common),
+        "queries": sum(drive.queries for drive in routes.values()),
+        "seeds": len(frozenset().union(*(one[place].seeds for place in common))),
+        "reference_seeds": len(frozenset().union(*(other[place].seeds for place in common))),
+        "verdict": _verdict(low, high),
+    }
+
+
+def _interval(draws: Draws, factor: float, level: float) -> tuple[float, float]:
+    """Percentiles of the resampled differences, this much further from the difference itself."""
+    difference, bounds = draws[0], np.quantile(draws[1:], [(1 - level) / 2, (1 + level) / 2])
+    low, high = difference + factor * (bounds - difference)
+    return float(low), float(high)
+
+
+def _verdict(low: float, high: float) -> str:
+    better, worse, none, short = VERDICTS
+    if np.isnan(low) or np.isnan(high):
+        return short
+    return better if low > 0 else worse if high < 0 else none
