@@ -14,7 +14,7 @@ import pytest
 from rich.console import Console
 
 from vprbench.cli import main
-from vprbench.cli.progress import SweepProgress
+from vprbench.cli.progress import CELL_STAGES, SweepProgress
 from vprbench.pool import Progress
 from vprbench.results import ResultTable
 from vprbench.runner import Outcome, run
@@ -111,7 +111,8 @@ def test_names_in_brackets_are_printed_as_they_are(answered: ResultTable, tell: 
 @pytest.mark.parametrize(
     ("stage", "answered", "shown"),
     [
-        ("fit", 0, "0 %"),
+        ("fit", 0, "2 %"),
+        ("fitted", 0, "5 %"),
         ("compare frames", 0, "62 %"),
         ("calibrate", 0, "5 %"),
         ("calibrate", 1, "52 %"),
@@ -126,9 +127,11 @@ def test_progress_moves_in_every_stage(stage: str, answered: int, shown: str) ->
         progress.step(Progress(0, "fit", 0, 1))
         for cell in cells[:answered]:
             progress.finish(Outcome(cell, {"status": "failed", "error": "no [frame] there"}, None))
-        progress.step(Progress(0, stage, 1 if "frames" in stage else 0, 2))
+        progress.step(Progress(0, stage, 1 if stage not in CELL_STAGES else 0, 2, "S1 [1/2]"))
     said = console.file.getvalue()  # type: ignore[attr-defined]
-    assert f"Tiny/a[size=3]/s0: {stage}" in said
+    assert f"Tiny/a[size=3]/s0: {stage} S1 [1/2]" in said
+    # What came of the fit is a line that stays, without a bar.
+    assert ("           Tiny/a[size=3]/s0: S1 [1/2]\n" in said) == (stage == "fitted")
     assert shown in [line for line in said.splitlines() if stage in line][-1]
     assert ("1/2  Tiny/2m/a[size=3]/s0  failed: no [frame] there" in said) == bool(answered)
 
@@ -217,3 +220,14 @@ def test_a_film_without_its_extra_is_told_before_anything_runs(
     monkeypatch.setattr("vprbench.cli.single.find_spec", lambda name: None)
     done = tell("run", "Street-Wide", "thumbnail", "--video", "drive.mp4")
     assert (done.code, done.err) == (2, "vprbench: --video needs moviepy: pip install 'vprbench[video]'\n")
+
+
+def test_what_many_jobs_have_to_say_alike_is_told_once() -> None:
+    sweep = [Job("Tiny", f"agent-{number}", 0, {"localizer": "thumbnail"}, ()) for number in range(3)]
+    console = Console(width=120, file=io.StringIO())
+    with SweepProgress(sweep, console) as progress:
+        for number in range(3):
+            progress.step(Progress(number, "fitted", 1, 1, "encoder not stored: the disk is full"))
+            progress.step(Progress(number, "fitted", 1, 1))
+    said = console.file.getvalue()  # type: ignore[attr-defined]
+    assert said == "           Tiny/agent-0/s0: encoder not stored: the disk is full\n"
