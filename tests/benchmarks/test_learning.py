@@ -2,9 +2,8 @@
 
 Groups "code 1024 views" set every row against that product, Phi I: the number in brackets is the ratio, which is also
 kept as `extra_info["per_product"]`. "plain" codes as in use, "tabulated" as while a dictionary is learned, where each
-step also needs the Gram matrix anew: "both products". Seen on a 2-core x86-64 server, with 225 and 900 units: plain 1.4 and
-1.3, both products 1.1 and 1.5, tabulated 2.3 and 2.4. So picking ten atoms costs a third of the product, where nothing
-but their correlations competes.
+step also needs the Gram matrix anew: "both products". Seen on a 2-core x86-64 server, with 225 and 900 units: plain 1.4
+and 1.3, both products 1.1 and 1.5, tabulated 2.3 and 2.4.
 """
 
 from __future__ import annotations
