@@ -128,18 +128,27 @@ def resample_chunks(
         yield resample(queries, block, min(size, resamples - done), rng)
 
 
-def widening(blocks: Sequence[float], level: float = LEVEL) -> float:
+def widening(blocks: Sequence[float], level: float = LEVEL, others: Sequence[tuple[float, float]] = ()) -> float:
     """By how much a percentile interval of the mean over drives is too narrow, given how many blocks each has.
 
     Resampling divides by the number of blocks, not of degrees of freedom (one less a drive), and its tails are those
     of the normal distribution, not Student's: sqrt(blocks / degrees) t / z, the "expanded" percentile interval of
     Hesterberg, "What teachers should know about the bootstrap", The American Statistician, 2015. NaN where a drive
     has fewer than two blocks.
+
+    Args:
+        blocks: of each drive.
+        level: of the interval.
+        others: the share of the variance that comes of something else which is drawn too, without that fault, and its
+            degrees of freedom; they join by Satterthwaite's rule (Biometrics Bulletin, 1946).
     """
     if min(blocks) < 2:
         return float("nan")
-    degrees, tail = sum(blocks) - len(blocks), (1 + level) / 2
-    return (sum(blocks) / degrees) ** 0.5 * student_quantile(tail, degrees) / NormalDist().inv_cdf(tail)
+    road, tail = sum(blocks) - len(blocks), (1 + level) / 2
+    parts = [(max(0.0, 1 - sum(share for share, _ in others)) * sum(blocks) / road, road), *others]
+    whole = sum(share for share, _ in parts)
+    degrees = whole**2 / sum(share**2 / free for share, free in parts)
+    return whole**0.5 * student_quantile(tail, degrees) / NormalDist().inv_cdf(tail)
 
 
 @cache

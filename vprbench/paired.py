@@ -4,7 +4,7 @@ Two agents on one route answer the same queries, and hard stretches of road are 
 both on the same stretches and dictionary seeds (`vprbench.paired_scores`) and takes the difference: what they have in
 common cancels. An agent's score is the mean over its cells (route and sampling distance).
 
-The interval is that of the percentiles, widened for the small number of blocks (`bootstrap.widening`).
+The interval is that of the percentiles, widened for the small numbers of blocks and seeds (`bootstrap.widening`).
 docs/statistics.md says how often such intervals held the truth.
 """
 
@@ -12,6 +12,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from itertools import combinations
+from typing import Any
 
 import numpy as np
 import pandas as pd
@@ -42,6 +43,8 @@ def compare(
 ) -> pd.DataFrame:
     """Differences between agents, over the cells that both answered, one row a pair, the largest first.
 
+    Without a reference, the agent of each pair is the one with the higher score.
+
     The columns: metric, agent, reference, difference (of the first less the second), low and high (its interval),
     cells (route and distance) and queries (over all routes) that it rests on, seeds and reference_seeds, and the
     verdict, one of `VERDICTS`. Intervals are of one pair each: of 20 pairs of equal agents about one is found to
@@ -71,6 +74,9 @@ def compare(
     asked = {cell: trace for cell, trace in traces.items() if cell.agent in wanted}
     scored, drives = score_cells(asked, metric, block_m, resamples, seed)
     rows = [_row(pair, scored, drives, level) for pair in pairs]
+    if reference is None:
+        pairs = [pair[::-1] if row["difference"] < 0 else pair for pair, row in zip(pairs, rows, strict=True)]
+        rows = [_row(pair, scored, drives, level) for pair in pairs]
     table = pd.DataFrame([{"metric": metric, **row} for row in rows])
     return table.sort_values("difference", ascending=False, kind="stable", ignore_index=True)
 
@@ -99,15 +105,16 @@ def _pairs(present: list[str], reference: str | None, agents: Sequence[str] | No
 
 def _row(
     pair: tuple[str, str], scored: Mapping[str, Mapping[Place, Scored]], drives: Mapping[str, Drive], level: float
-) -> dict[str, object]:
+) -> dict[str, Any]:
     """The row of one pair."""
-    one, other = (scored[agent] for agent in pair)
-    common = [place for place in one if place in other]
+    common = [place for place in scored[pair[0]] if place in scored[pair[1]]]
     if not common:
         raise DataError(f"compare: {pair[0]} and {pair[1]} have no finished cell in common; run the sweep again")
-    routes = {route: drives[route] for route, _ in common}
-    draws = np.mean([one[place].draws - other[place].draws for place in common], axis=0)
-    low, high = _interval(draws, widening([drive.blocks for drive in routes.values()], level), level)
+    one, other = ([scored[agent][place] for place in common] for agent in pair)
+    routes = [drives[route] for route in dict.fromkeys(route for route, _ in common)]
+    draws = np.mean([a.draws - b.draws for a, b in zip(one, other, strict=True)], axis=0)
+    factor = widening([drive.blocks for drive in routes], level, _seed_shares(one, other, draws))
+    low, high = _interval(draws, factor, level)
     return {
         "agent": pair[0],
         "reference": pair[1],
@@ -115,11 +122,25 @@ def _row(
         "low": low,
         "high": high,
         "cells": len(common),
-        "queries": sum(drive.queries for drive in routes.values()),
-        "seeds": len(frozenset().union(*(one[place].seeds for place in common))),
-        "reference_seeds": len(frozenset().union(*(other[place].seeds for place in common))),
+        "queries": sum(drive.queries for drive in routes),
+        "seeds": len({seed for cell in one for seed in cell.seeds}),
+        "reference_seeds": len({seed for cell in other for seed in cell.seeds}),
         "verdict": _verdict(low, high),
     }
+
+
+def _seed_shares(one: Sequence[Scored], other: Sequence[Scored], draws: Draws) -> list[tuple[float, float]]:
+    """The share of the variance of a difference that comes of dictionary seeds, and its degrees of freedom."""
+    a, b = (_by_seed(cells) for cells in (one, other))
+    sources = [a - b] if a.index.equals(b.index) else [a, b]
+    whole = float(draws[1:].var())
+    several = [scores for scores in sources if len(scores) > 1] if whole > 0 else []
+    return [(float(scores.var(ddof=1)) / len(scores) / whole, len(scores) - 1.0) for scores in several]
+
+
+def _by_seed(cells: Sequence[Scored]) -> pd.Series:
+    """The mean over cells of each seed that was run in all of them."""
+    return pd.DataFrame([cell.seeds for cell in cells]).dropna(axis=1).mean().sort_index()
 
 
 def _interval(draws: Draws, factor: float, level: float) -> tuple[float, float]:

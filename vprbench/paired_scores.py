@@ -39,11 +39,11 @@ class Scored:
 
     Attributes:
         draws: the mean over seeds, one a resample.
-        seeds: that were run.
+        seeds: the score of each seed that was run.
     """
 
     draws: Draws
-    seeds: frozenset[int]
+    seeds: Mapping[int, float]
 
 
 @dataclass(frozen=True)
@@ -75,9 +75,9 @@ def score_cells(
         weights = np.concatenate([np.ones((1, queries), np.int64), *chunks])
         draws = {cell: _draws(trace, metric, weights) for cell, trace in there.items()}
         for agent, place, seeds in _groups(there):
-            by_seed = np.stack([draws[Cell(route, agent, place[1], number)] for number in sorted(seeds)])
-            shares = _seed_shares(tuple(sorted(seeds)), resamples, seed)
-            scored.setdefault(agent, {})[place] = Scored(np.einsum("sd,sd->d", shares, by_seed), seeds)
+            by_seed = np.stack([draws[Cell(route, agent, place[1], number)] for number in seeds])
+            mean = np.einsum("sd,sd->d", _seed_shares(seeds, resamples, seed), by_seed)
+            scored.setdefault(agent, {})[place] = Scored(mean, dict(zip(seeds, by_seed[:, 0].tolist(), strict=True)))
     return scored, drives
 
 
@@ -99,20 +99,19 @@ def _draws(trace: Trace, metric: str, weights: np.ndarray) -> Draws:
     return {"auc": auc, "accuracy": accuracy}.get(name, auc * accuracy)
 
 
-def _groups(cells: Iterable[Cell]) -> list[tuple[str, Place, frozenset[int]]]:
+def _groups(cells: Iterable[Cell]) -> list[tuple[str, Place, tuple[int, ...]]]:
     """The agents and cells of one route, each with the seeds that were run."""
     seeds: dict[tuple[str, Place], set[int]] = {}
     for cell in cells:
         seeds.setdefault((cell.agent, (cell.route, cell.sampling_distance)), set()).add(cell.seed)
-    return [(agent, place, frozenset(numbers)) for (agent, place), numbers in seeds.items()]
+    return [(agent, place, tuple(sorted(numbers))) for (agent, place), numbers in seeds.items()]
 
 
 def _seed_shares(seeds: tuple[int, ...], resamples: int, seed: int) -> Float64[np.ndarray, "seeds draws"]:
     """The share of each seed in each resample; equal seeds draw alike, on whichever route and for whichever agent."""
     count = len(seeds)
-    whole = np.full((count, 1), 1 / count)
     if count == 1:
         return np.ones((1, resamples + 1))
     rng = np.random.default_rng([seed, crc32(repr(seeds).encode())])
     drawn = rng.multinomial(count - 1, np.full(count, 1 / count), size=resamples)
-    return np.concatenate([whole, drawn.T / (count - 1)], axis=1)
+    return np.concatenate([np.full((count, 1), 1 / count), drawn.T / (count - 1)], axis=1)

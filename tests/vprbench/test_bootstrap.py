@@ -171,6 +171,14 @@ def test_the_widening_makes_independent_blocks_exact() -> None:
     assert (away <= reach).mean() < 0.89
 
 
+def test_what_varies_beside_the_road_joins_by_its_share() -> None:
+    assert widening([6.0], others=[(0.0, 4.0)]) == pytest.approx(widening([6.0]))
+    assert widening([6.0], others=[(1.0, 4.0)]) == pytest.approx(stats.t.ppf(0.975, 4) / stats.norm.ppf(0.975))
+    # Half the variance each: 0.6 and 0.5 after the road's 6/5, with 1.21 / (0.36 / 5 + 0.25 / 4) degrees of freedom.
+    half = np.sqrt(1.1) * stats.t.ppf(0.975, 1.21 / (0.072 + 0.0625)) / stats.norm.ppf(0.975)
+    assert widening([6.0], others=[(0.5, 4.0)]) == pytest.approx(half)
+
+
 def test_the_widening_ends_with_many_blocks_and_has_no_answer_for_one() -> None:
     assert widening([1000.0]) == pytest.approx(1.0, abs=0.003)
     assert widening([10.0, 10.0]) == pytest.approx(np.sqrt(20 / 18) * stats.t.ppf(0.975, 18) / stats.norm.ppf(0.975))
