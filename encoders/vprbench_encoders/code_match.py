@@ -26,8 +26,7 @@ def match_pairs(
     "overlap" is 1 - L1(a, b) / (L1(a) + L1(b)), "cosine" that of the angle, negative ones as 0. Equal rows have 1,
     also where they are zero; a zero row has nothing in common with another.
     """
-    compare = _overlap if similarity == "overlap" else _cosine
-    return compare(queries, memory, query_index, memory_index)
+    return _compare(queries, memory, query_index, memory_index, similarity == "cosine")
 
 
 def match_all(
@@ -43,43 +42,40 @@ def match_all(
 
 
 # fastmath lets the sums run in vector lanes; it is the one kernel behind every comparison, so equal pairs of rows
-# give bitwise equal results whichever other pairs are asked for.
+# give bitwise equal results whichever other pairs are asked for. Its parts are inlined before it is optimised, so that
+# no call stands in the way of that.
 @njit(cache=True, fastmath=True)
-def _overlap(
+def _compare(
     queries: NDArray[np.float32],
     memory: NDArray[np.float32],
     query_index: NDArray[np.int64],
     memory_index: NDArray[np.int64],
+    angles: bool,
 ) -> NDArray[np.float32]:
     result = np.empty(len(query_index), np.float32)
     for pair in range(len(query_index)):
         query, unit = queries[query_index[pair]], memory[memory_index[pair]]
-        apart, total = np.float32(0), np.float32(0)
-        for i in range(len(query)):
-            apart += abs(query[i] - unit[i])
-            total += abs(query[i]) + abs(unit[i])
-        result[pair] = np.float32(1) - apart / total if total > 0 else np.float32(1)
+        result[pair] = _cosine(query, unit) if angles else _overlap(query, unit)
     return result
 
 
-@njit(cache=True, fastmath=True)
-def _cosine(
-    queries: NDArray[np.float32],
-    memory: NDArray[np.float32],
-    query_index: NDArray[np.int64],
-    memory_index: NDArray[np.int64],
-) -> NDArray[np.float32]:
-    result = np.empty(len(query_index), np.float32)
-    for pair in range(len(query_index)):
-        query, unit = queries[query_index[pair]], memory[memory_index[pair]]
-        product, first, second = np.float32(0), np.float32(0), np.float32(0)
-        for i in range(len(query)):
-            product += query[i] * unit[i]
-            first += query[i] * query[i]
-            second += unit[i] * unit[i]
-        lengths = np.sqrt(first) * np.sqrt(second)
-        if lengths > 0:
-            result[pair] = min(max(product / lengths, np.float32(0)), np.float32(1))
-        else:
-            result[pair] = np.float32(first == second)
-    return result
+@njit(cache=True, fastmath=True, inline="always")
+def _overlap(query: NDArray[np.float32], unit: NDArray[np.float32]) -> np.float32:
+    apart, total = np.float32(0), np.float32(0)
+    for i in range(len(query)):
+        apart += abs(query[i] - unit[i])
+        total += abs(query[i]) + abs(unit[i])
+    return np.float32(1) - apart / total if total > 0 else np.float32(1)
+
+
+@njit(cache=True, fastmath=True, inline="always")
+def _cosine(query: NDArray[np.float32], unit: NDArray[np.float32]) -> np.float32:
+    product, first, second = np.float32(0), np.float32(0), np.float32(0)
+    for i in range(len(query)):
+        product += query[i] * unit[i]
+        first += query[i] * query[i]
+        second += unit[i] * unit[i]
+    lengths = np.sqrt(first) * np.sqrt(second)
+    if lengths > 0:
+        return min(max(product / lengths, np.float32(0)), np.float32(1))
+    return np.float32(first == second)
