@@ -7,7 +7,7 @@ from typing import Annotated
 
 import typer
 
-__all__ = ["app", "check", "list_", "run", "score", "sweep", "table"]
+__all__ = ["app", "check", "compare", "list_", "run", "score", "sweep", "table"]
 
 app = typer.Typer(
     name="vprbench",
@@ -92,6 +92,19 @@ def table(
     from vprbench.cli.reading import table_command
 
     table_command(results, rows, columns, metric, format)
+
+
+@app.command(epilog="Example: vprbench compare runs/streets.csv --metric auc_all --reference LPMP")
+def compare(
+    results: Annotated[Path, typer.Argument(help="The .csv or .parquet of a sweep, its traces beside it.")],
+    metric: Annotated[str, typer.Option(help="auc, auc_all or accuracy; with _metric by the metric rule.")] = "auc_all",
+    reference: Annotated[str | None, typer.Option(help="The agent to compare with. Default: each with each.")] = None,
+    format: Annotated[str, typer.Option(help="terminal, markdown, latex or csv.")] = "terminal",
+) -> None:
+    """Say which agents differ: paired differences on the same queries, with intervals, from the stored answers."""
+    from vprbench.cli.comparing import compare_command
+
+    compare_command(results, metric, reference, format)
 
 
 @app.command(name="list", epilog="Example: vprbench list routes --data ~/kitti")
