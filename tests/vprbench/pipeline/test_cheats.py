@@ -159,6 +159,13 @@ def test_half_right_is_scored_by_what_the_confidence_knows(answer: Answer, drive
         assert row["recall_at_100_precision_all"] == share
 
 
+def test_who_is_always_right_need_not_know_it(answer: Answer) -> None:
+    """Random confidence, no two alike, so that many a resample lacks the surest answers."""
+    row = ok(answer("Beside", "lapse", 4.0, start=90.0, stop=90.0, confidence="random"))
+    assert len(BEST_IS_ONE) == sum(row[name] == pytest.approx(1.0, abs=1e-12) for name in BEST_IS_ONE)
+    assert sorted(bounds(row, "")) == pytest.approx([1.0] * len(bounds(row, "")), abs=1e-12)
+
+
 @pytest.mark.parametrize("name", ["peek", "peek-by-matrix"])
 def test_the_front_door_is_shut(answer: Answer, name: str) -> None:
     row = answer("Beside", name).row
