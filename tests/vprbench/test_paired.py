@@ -305,13 +305,16 @@ def test_senseless_questions_are_refused(traces: Traces, setting: dict[str, Any]
         compare(traces, **setting)
 
 
-def test_a_table_on_disk_is_compared_by_its_traces() -> None:
-    table = ResultTable(RESULTS, "k0-2")
-    row = compare(table, "accuracy", reference="LPMP").iloc[0]
-    means = table.frame().groupby("agent")["accuracy"].mean()
-    assert row["difference"] == pytest.approx(means["CoHOG"] - means["LPMP"], abs=1e-6)
-    assert row["verdict"] == "no difference shown"
-    assert (row["cells"], row["queries"]) == (3, 80)
+@pytest.mark.parametrize("metric", PAIRED_METRICS)
+@pytest.mark.parametrize("name", ["k0-2", "streets"])
+def test_a_table_on_disk_is_compared_by_its_traces(name: str, metric: str) -> None:
+    table = ResultTable(RESULTS, name)
+    row = compare(table, metric, reference="LPMP", resamples=100).set_index("agent").loc["CoHOG"]
+    rows = table.frame().query("agent in ('CoHOG', 'LPMP')")
+    means = rows.groupby("agent")[metric].mean()
+    assert row["difference"] == pytest.approx(means["CoHOG"] - means["LPMP"], abs=2e-6)
+    of_routes = rows.groupby("route")["queries"].first()
+    assert (row["cells"], row["queries"]) == (3 * len(of_routes), of_routes.sum())
 
 
 @settings(max_examples=30)
