@@ -17,16 +17,15 @@ from jaxtyping import Float32, Int64
 
 from vprbench.errors import ConfigError, DataError, PhaseError
 from vprbench.types import FRAME_HEIGHT, Frame, Landmarks, LearningStep
-from vprbench_encoders import hsd_store
+from vprbench_encoders import hierarchy, hsd_store
 from vprbench_encoders.code_match import Similarity, match_all, match_pairs
 from vprbench_encoders.focus import FocusDetector
+from vprbench_encoders.hierarchy import Hierarchy
 from vprbench_encoders.homeostasis import Kind
 from vprbench_encoders.hsd_store import Learned
 from vprbench_encoders.layers import LayerRecipe, LayerReport, TopologicalLayer
 from vprbench_encoders.local_views import LocalViews, ViewSampling
-from vprbench_encoders.matching_pursuit import Selection
 from vprbench_encoders.patches import LocalView
-from vprbench_encoders.pooling import pooled_side
 from vprbench_encoders.som import KohonenMap
 from vprbench_encoders.sparse_hebbian import Rule, SparseHebbian
 from vprbench_encoders.stepwise import named
@@ -145,32 +144,17 @@ class HSD:
             DataError: the frames have no focus points.
         """
         random = np.random.default_rng(self.seed)
-        inputs, held_out = yield from named("local views", self._sampling.drawing(self._views, frames, random))
-        layers: list[TopologicalLayer] = []
-        reports: list[LayerReport] = []
-        for number, recipe in enumerate(self._recipes, 1):
-            if layers:
-                inputs = yield from named(f"C{number - 1}", layers[-1].pooling(inputs))
-                held_out = layers[-1].pooled(held_out)
-            layer, report = yield from recipe.follow(f"S{number}", inputs, held_out, random)
-            layers.append(layer)
-            reports.append(report)
-        self.layers, self.reports = tuple(layers), tuple(reports)
+        views = yield from named("local views", self._sampling.drawing(self._views, frames, random))
+        self.layers, self.reports = yield from hierarchy.learning(self._recipes, views, random)
 
     def measures(self) -> dict[str, float]:
-        """What was learned, in numbers: `LayerReport.measures` of s1 and of s2, and the size of a signature.
+        """What was learned, in numbers; see `hierarchy.measures`.
 
         Raises:
             PhaseError: nothing has been learned yet.
         """
-        if not self.layers:
-            raise PhaseError("hsd: there is nothing to measure yet: call fit(frames), or load what was saved")
-        found = {
-            f"s{number}_{name}": value
-            for number, report in enumerate(self.reports, 1)
-            for name, value in report.measures().items()
-        }
-        return found | {"signature_size": float(self.layers[-1].size)}
+        self._must_have_learned()
+        return hierarchy.measures(Hierarchy(self.layers, self.reports))
 
     def encode(self, frame: Frame) -> Landmarks:
         """The signatures of the frame's focus points.
@@ -178,8 +162,7 @@ class HSD:
         Raises:
             PhaseError: nothing has been learned yet.
         """
-        if not self.layers:
-            raise PhaseError("hsd: there are no dictionaries yet: call fit(frames), or load saved ones")
+        self._must_have_learned()
         points = self._views.points(frame)
         signatures = self._views.cut(frame, points)
         for layer in self.layers:
@@ -209,8 +192,7 @@ class HSD:
             PhaseError: nothing has been learned yet.
             ConfigError: matplotlib is not installed.
         """
-        if not self.layers:
-            raise PhaseError("hsd: there is nothing to draw yet: call fit(frames), or load saved dictionaries")
+        self._must_have_learned()
         from vprbench_encoders.hsd_figures import DrawnHSD
 
         return DrawnHSD(self.layers, self.reports, self._views.view, self.pool, self.topology).figures()
@@ -221,8 +203,7 @@ class HSD:
         Raises:
             PhaseError: nothing has been learned yet.
         """
-        if not self.layers:
-            raise PhaseError("hsd: there is nothing to save yet: call fit(frames) first")
+        self._must_have_learned()
         options = {option.name: getattr(self, option.name) for option in fields(self) if option.init}
         learned = tuple(Learned(layer.units, layer.mean, *layer.selection) for layer in self.layers)
         hsd_store.write(Path(path), hsd_store.Stored(options, learned, self.reports))
@@ -241,21 +222,15 @@ class HSD:
         }
         try:
             encoder = cls(**options)
-            encoder.layers = tuple(encoder._restored(stored.layers))
+            encoder.layers = tuple(hierarchy.restored(encoder._recipes, stored.layers, encoder._views.view.size))
         except (ConfigError, TypeError, ValueError) as error:
             raise DataError(f"{path}: does not hold what its options say, or they are not this version's") from error
         encoder.reports = stored.reports
         return encoder
 
-    def _restored(self, layers: Sequence[Learned]) -> Iterator[TopologicalLayer]:
-        """The layers that learned this; ValueError where it does not fit the options."""
-        size = self._views.view.size
-        for recipe, learned in zip(self._recipes, layers, strict=True):
-            if learned.units.shape != (recipe.side**2, size):
-                raise ValueError(learned.units.shape)
-            layer = recipe.layer(learned.units, learned.mean, Selection(learned.gain, learned.tables))
-            size = pooled_side(recipe.side, recipe.pool) ** 2
-            yield layer
+    def _must_have_learned(self) -> None:
+        if not self.layers:
+            raise PhaseError("hsd: there are no dictionaries yet: call fit(frames), or load saved ones")
 
     def _check(self) -> None:
         side = self.map_size or self.size

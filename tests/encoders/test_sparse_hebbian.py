@@ -8,8 +8,9 @@ import pytest
 from numpy.typing import NDArray
 
 from vprbench.errors import ConfigError
+from vprbench_encoders.hebbian import hebbian_sums
 from vprbench_encoders.matching_pursuit import by_correlation, reconstruction_rate, residuals
-from vprbench_encoders.sparse_hebbian import Rule, SparseHebbian, hebbian_sums, unit_length
+from vprbench_encoders.sparse_hebbian import Rule, SparseHebbian, unit_length
 from vprbench_encoders.stepwise import finished
 
 # Steps small enough for the plain rule to settle on so few signals.
