@@ -7,7 +7,7 @@ from typing import Annotated
 
 import typer
 
-__all__ = ["app", "check", "compare", "list_", "run", "score", "sweep", "table"]
+__all__ = ["app", "check", "compare", "fit", "list_", "run", "score", "sweep", "table"]
 
 app = typer.Typer(
     name="vprbench",
@@ -78,6 +78,30 @@ def run(
     from vprbench.cli.single import Single, run_command
 
     run_command(Single(route, agent, distance, seed, data, routes, trace, video, cache))
+
+
+@app.command(epilog="Example: vprbench fit hsd-12 hsd-15-30 --route Street-Wide --seeds 0,1,2")
+def fit(
+    encoders: Annotated[list[str], typer.Argument(help="Encoders' names, or the insides of TOML tables: 'name=...'.")],
+    route: Annotated[str, typer.Option(help="The route whose training drives they learn from.")],
+    seeds: Annotated[str, typer.Option(help="Whole numbers, with commas between.")] = "0",
+    out: Annotated[Path, typer.Option(help="Folder of what they learned.")] = Path("runs"),
+    data: Data = None,
+    routes: Routes = None,
+    cache: Cache = None,
+    refit: Annotated[bool, typer.Option("--refit", help="Learn, and time, again what was learned before.")] = False,
+    figures: Annotated[
+        bool, typer.Option("--figures", help="Draw what was learned (needs the figures extra).")
+    ] = False,
+) -> None:
+    """Let encoders learn from the training drives of a route, and measure what they learned.
+
+    Leaves OUT/ENCODER-sSEED.npz, OUT/fit.csv (the measures), OUT/fit-timings.json and, if asked for, OUT/figures/.
+    A sweep that needs the same encoder then takes it as it is. Exit code 1 if one failed.
+    """
+    from vprbench.cli.fitting import Fitting, fit_command
+
+    raise typer.Exit(fit_command(Fitting(encoders, route, seeds, out, data, routes, cache, refit, figures)))
 
 
 @app.command(epilog="Example: vprbench table runs/streets.csv --columns route --metric auc_all --format latex")

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import os
 from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cache
@@ -16,6 +15,7 @@ from vprbench.cli.progress import SweepProgress
 from vprbench.data_root import data_root
 from vprbench.encoder_store import EncoderStore
 from vprbench.errors import DataError
+from vprbench.machine import cores
 from vprbench.plan import Plan, plan
 from vprbench.pool import Progress, Settings, run_all
 from vprbench.provenance import data_checksum, versions
@@ -70,12 +70,7 @@ def _settings(request: Request, sweep: Sweep, question: Path) -> Settings:
     """How to run it: the command line's routes file wins over the TOML's."""
     own = request.routes or (question.parent / sweep.routes_file if sweep.routes_file else None)
     store = EncoderStore.under(request.cache)
-    return Settings(request.jobs or _cores(), request.timeout, request.data, own, store)
-
-
-def _cores() -> int:
-    """Processors this process may use; not every system tells more than how many there are."""
-    return len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count() or 1
+    return Settings(request.jobs or cores(), request.timeout, request.data, own, store)
 
 
 def _plan(request: Request, sweep: Sweep, table: ResultTable, settings: Settings) -> Plan:
