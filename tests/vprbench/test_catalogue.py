@@ -79,6 +79,21 @@ def test_drives_that_share_an_image_are_refused(own_drive: Writer, tmp_path: Pat
         load_route("my-road", tmp_path, routes)
 
 
+@pytest.mark.parametrize(("images", "said"), [("3", r"3\.png; leave"), ("123", r"1\.png and 2 more; leave")])
+def test_training_images_of_the_route_are_refused(own_drive: Writer, tmp_path: Path, images: str, said: str) -> None:
+    own_drive(LOCAL.format(east=0.0))
+    own_drive(LOCAL.format(east=2.0), "day2")
+    linked = LOCAL.format(east=400.0)
+    for image in images:
+        linked = linked.replace(f"img/{image}", f"other/{image}")
+    own_drive(linked, "day3")
+    # Whatever name a file goes by.
+    (tmp_path / "day3" / "other").symlink_to(tmp_path / "day2" / "img")
+    routes = own(tmp_path, FOLDER + 'training = ["day3"]\n')
+    with pytest.raises(DataError, match=rf"day2.frames\.csv and .*day3.frames\.csv share the image .*day2.*{said}"):
+        load_route("my-road", tmp_path, routes)
+
+
 def test_drives_along_different_roads_are_refused(own_drive: Writer, tmp_path: Path) -> None:
     own_drive(LOCAL.format(east=0.0))
     own_drive(LOCAL.format(east=500.0), "day2")
@@ -134,12 +149,16 @@ def test_an_unknown_route_is_met_by_the_nearest_name() -> None:
         ),
         (ODOMETRY + 'split = "tunning"', r"\.split: 'tunning': did you mean 'tuning'\?"),
         (ODOMETRY + 'training = "00:1-2"', r"\.training: must be a list, not '00:1-2'"),
-        (ODOMETRY + 'training = ["00:9-50"]', r': "00:0-14" and "00:9-50" share frames'),
+        (ODOMETRY + 'training = ["00:9-50"]', r': "00:0-14" and "00:9-50" share frames 9-14; leave'),
+        (ODOMETRY + 'training = ["00:29-50"]', r': "00:15-29" and "00:29-50" share frames 29; leave'),
         (ODOMETRY.replace("00:15-29", "01:15-29"), ": learn and test lie in two sequences"),
         (ODOMETRY.replace("00:15-29", "00:15"), r"""\.test: '00:15' is not "sequence:first-last", for example"""),
         (ODOMETRY.replace("00:15-29", "00:29-15"), r"\.test: '00:29-15' ends before it has two frames"),
         ('reader = "kitti-odometry"\ntest = "00:15-29"', r"\.learn: this key is missing"),
-        (RAW.replace("00:15", "2011_10_03_drive_0027:9"), r': "2011_10_03_drive_0027:0-14" and ".*:9-29" share frames'),
+        (
+            RAW.replace("00:15", "2011_10_03_drive_0027:9"),
+            r': "2011_10_03_drive_0027:0-14" and ".*:9-29" share frames 9-14',
+        ),
         (
             RAW.replace("15-29", "4530-4541"),
             r'\.test: "00:4530-4541" goes on after the last frame of the sequence, 4540',

@@ -12,7 +12,7 @@ from typing import Annotated, Literal
 from pydantic import BaseModel, BeforeValidator, ConfigDict, model_validator
 
 from vprbench.availability import Need
-from vprbench.frame_ranges import FrameRun
+from vprbench.frame_ranges import FrameRun, format_ranges
 from vprbench.route import Route
 
 __all__ = ["Entry", "Run", "RunsEntry", "Split"]
@@ -76,8 +76,10 @@ class RunsEntry(Entry):
 
     @model_validator(mode="after")
     def _disjoint(self) -> RunsEntry:
-        """A frame that is both learned and tested would be recognised for nothing."""
+        """A frame that is both learned and tested, or trained on, would be recognised for nothing."""
         for a, b in combinations(self.runs, 2):
-            if a.sequence == b.sequence and a.first <= b.last and b.first <= a.last:
-                raise ValueError(f'"{a}" and "{b}" share frames')
+            first, last = max(a.first, b.first), min(a.last, b.last)
+            if a.sequence == b.sequence and first <= last:
+                shared = format_ranges(range(first, last + 1))
+                raise ValueError(f'"{a}" and "{b}" share frames {shared}; leave them out of one')
         return self

@@ -82,7 +82,8 @@ class FolderEntry(Entry):
         for a, b in combinations(drives, 2):
             shared = sorted({image.resolve() for image in a.images} & {image.resolve() for image in b.images})
             if shared:
-                raise DataError(f"{a.path} and {b.path} share the image {shared[0]}")
+                more = f" and {len(shared) - 1} more" if len(shared) > 1 else ""
+                raise DataError(f"{a.path} and {b.path} share the image {shared[0]}{more}; leave them out of one")
         origin = None if drives[0].geodetic is None else drives[0].geodetic[0]
         learn, test, *training = (drive.traverse(self.camera.reduced, origin) for drive in drives)
         return Route(name, learn, test, tuple(training), self.environment, self.split)
