@@ -225,6 +225,18 @@ def test_seeds_make_a_learned_agent_less_sure() -> None:
     assert row["high"] - row["low"] == pytest.approx(2 * 2.776445 * error, rel=0.1)
 
 
+def test_seeds_that_agents_share_are_paired() -> None:
+    """Two agents built on the same five dictionaries: good and bad luck with those is no difference between them."""
+    rng = np.random.default_rng(4)
+    luck, noise = np.array([0.2, 0.4, 0.6, 0.8, 0.9])[:, None], rng.random((2, 5, 100))
+    right = noise * 0.2 + np.arange(100) % 10 / 10 < luck
+    shared = {Cell("R", "ab"[agent], 2.0, seed): trace_of(right[agent, seed]) for agent, seed in np.ndindex(2, 5)}
+    other = {Cell("R", c.agent, 2.0, c.seed + 5 * (c.agent == "b")): trace for c, trace in shared.items()}
+    paired, unpaired = (only(cells, "a", "b", metric="accuracy") for cells in (shared, other))
+    assert paired["difference"] == pytest.approx(unpaired["difference"])
+    assert paired["high"] - paired["low"] < 0.2 * (unpaired["high"] - unpaired["low"])
+
+
 def correlated(rng: np.random.Generator, rho: float, shape: tuple[int, int]) -> np.ndarray:
     """Rows of an AR(1) process, one a frame, of standard normal values."""
     state, rows = rng.standard_normal(shape[1]), []
