@@ -4,8 +4,6 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from contextlib import ExitStack
-from copy import deepcopy
-from functools import cached_property
 from typing import Any, get_args
 from unittest.mock import patch
 
@@ -13,9 +11,10 @@ import numpy as np
 from jaxtyping import Float32
 
 from vprbench.checks.check import Check, DoesNotApply, Suite, expect
-from vprbench.checks.samples import drive, flat_frame, training_drives, training_frames
+from vprbench.checks.localizer_subject import LocalizerSubject, encoder_of
+from vprbench.checks.samples import flat_frame, training_drives, training_frames
 from vprbench.plugins import missing
-from vprbench.protocols import DescriptorLocalizer, Encoder, Localizer, Recruiting
+from vprbench.protocols import DescriptorLocalizer, Localizer, Recruiting
 from vprbench.types import Observation
 
 __all__ = ["localizer_checks"]
@@ -26,65 +25,10 @@ def localizer_checks(factory: Callable[[], Localizer]) -> Iterator[Check]:
 
     The checks share one fitted localizer, so that one that is slow to learn need not learn in each.
     """
-    return _suite.checks(_Subject(factory))
+    return _suite.checks(LocalizerSubject(factory))
 
 
-class _Subject:
-    """The localizer under test, fitted when first needed, and a drive to learn."""
-
-    def __init__(self, factory: Callable[[], Localizer]) -> None:
-        self.factory = factory
-
-    @cached_property
-    def fitted(self) -> Localizer:
-        return self.fit()
-
-    @property
-    def drive(self) -> list[Observation]:
-        """Six views, copied: what a localizer writes into them, no other check sees."""
-        return deepcopy(self._views[:-1])
-
-    @property
-    def bend(self) -> list[Observation]:
-        """The same views on a road that turns at every frame."""
-        return drive(6, bent=True)
-
-    @property
-    def unseen(self) -> Observation:
-        """A view that the drive does not show."""
-        return deepcopy(self._views[-1])
-
-    @cached_property
-    def _views(self) -> list[Observation]:
-        return drive(7)
-
-    def fit(self) -> Localizer:
-        """A new localizer that has trained off the road, through an encoder that did so before."""
-        localizer = self.factory()
-        if (encoder := _encoder(localizer)) is not None:
-            encoder.fit(training_frames())
-        localizer.fit(training_drives())
-        return localizer
-
-    def cleared(self, sampling: float | None = None) -> Localizer:
-        """The localizer without places; by default at the vigilance or step that makes every frame a place."""
-        dense = 1.0 if self.fitted.recruiting == "vigilance" else 0.5
-        self.fitted.clear(dense if sampling is None else sampling)
-        return self.fitted
-
-    def learned(self) -> tuple[Localizer, list[Observation]]:
-        """The localizer after the drive, and the observations that became places."""
-        localizer = self.cleared()
-        return localizer, [seen for seen in self.drive if localizer.learn(seen) is not None]
-
-
-_suite = Suite[_Subject]()
-
-
-def _encoder(localizer: Localizer) -> Encoder | None:
-    """What a localizer looks through, if anything."""
-    encoder = getattr(localizer, "encoder", None)
-    return encoder if isinstance(encoder, Encoder) else None
+_suite = Suite[LocalizerSubject]()
 
 
 def _answers(localizer: Localizer, observations: Sequence[Observation]) -> Float32[np.ndarray, "queries places"]:
@@ -96,20 +40,20 @@ def _blind(observation: Observation) -> Observation:
 
 
 @_suite.add
-def _has_every_method(subject: _Subject) -> None:
+def _has_every_method(subject: LocalizerSubject) -> None:
     lacks = missing("localizer", subject.factory())
     asked = "a Localizer has recruiting, fit, clear, learn and respond"
     expect(not lacks, f"{asked}; this one lacks {', '.join(lacks)}")
 
 
 @_suite.add
-def _says_what_recruits(subject: _Subject) -> None:
+def _says_what_recruits(subject: LocalizerSubject) -> None:
     known, said = get_args(Recruiting), subject.factory().recruiting
     expect(said in known, f"recruiting is one of {', '.join(map(repr, known))}, not {said!r}")
 
 
 @_suite.add
-def _fit_is_repeatable(subject: _Subject) -> None:
+def _fit_is_repeatable(subject: LocalizerSubject) -> None:
     localizer, places = subject.learned()
     before = _answers(localizer, subject.drive)
     again = subject.fit()
@@ -121,9 +65,9 @@ def _fit_is_repeatable(subject: _Subject) -> None:
 
 
 @_suite.add
-def _leaves_its_encoder_as_it_is(subject: _Subject) -> None:
+def _leaves_its_encoder_as_it_is(subject: LocalizerSubject) -> None:
     localizer = subject.factory()
-    encoder = _encoder(localizer)
+    encoder = encoder_of(localizer)
     if encoder is None:
         raise DoesNotApply("it has no encoder, which is optional")
     encoder.fit(training_frames())
@@ -137,7 +81,7 @@ def _leaves_its_encoder_as_it_is(subject: _Subject) -> None:
 
 
 @_suite.add
-def _is_silent_without_places(subject: _Subject) -> None:
+def _is_silent_without_places(subject: LocalizerSubject) -> None:
     responses = subject.cleared().respond(subject.unseen)
     expect(
         responses.shape == (0,),
@@ -146,7 +90,7 @@ def _is_silent_without_places(subject: _Subject) -> None:
 
 
 @_suite.add
-def _numbers_places_in_order(subject: _Subject) -> None:
+def _numbers_places_in_order(subject: LocalizerSubject) -> None:
     localizer = subject.cleared()
     given = [localizer.learn(seen) for seen in subject.drive for _ in range(2)]
     places = [place for place in given if place is not None]
@@ -155,7 +99,7 @@ def _numbers_places_in_order(subject: _Subject) -> None:
 
 
 @_suite.add
-def _recruits_as_often_as_asked(subject: _Subject) -> None:
+def _recruits_as_often_as_asked(subject: LocalizerSubject) -> None:
     if subject.fitted.recruiting == "step":
         asked, sparse, places = "step 2 recruits every 2 m of road, however it bends", 2.0, [0, 2, 4]
     else:
@@ -168,21 +112,21 @@ def _recruits_as_often_as_asked(subject: _Subject) -> None:
 
 
 @_suite.add
-def _responds_once_a_place(subject: _Subject) -> None:
+def _responds_once_a_place(subject: LocalizerSubject) -> None:
     localizer, places = subject.learned()
     shape = localizer.respond(subject.unseen).shape
     expect(shape == (len(places),), f"with {len(places)} places respond gives shape ({len(places)},), not {shape}")
 
 
 @_suite.add
-def _responds_in_float32(subject: _Subject) -> None:
+def _responds_in_float32(subject: LocalizerSubject) -> None:
     localizer, _ = subject.learned()
     dtype = localizer.respond(subject.unseen).dtype
     expect(dtype == np.float32, f"responses are float32, not {dtype}")
 
 
 @_suite.add
-def _responds_in_0_1(subject: _Subject) -> None:
+def _responds_in_0_1(subject: LocalizerSubject) -> None:
     localizer, _ = subject.learned()
     responses = _answers(localizer, [*subject.drive, subject.unseen])
     asked = bool(((responses >= 0) & (responses <= 1)).all())
@@ -190,7 +134,7 @@ def _responds_in_0_1(subject: _Subject) -> None:
 
 
 @_suite.add
-def _recognises_what_it_learned(subject: _Subject) -> None:
+def _recognises_what_it_learned(subject: LocalizerSubject) -> None:
     localizer, places = subject.learned()
     for index, responses in enumerate(_answers(localizer, places)):
         best = responses.argmax()
@@ -199,14 +143,14 @@ def _recognises_what_it_learned(subject: _Subject) -> None:
 
 
 @_suite.add
-def _responds_repeatably(subject: _Subject) -> None:
+def _responds_repeatably(subject: LocalizerSubject) -> None:
     localizer, places = subject.learned()
     same = np.array_equal(_answers(localizer, places), _answers(localizer, places[::-1])[::-1])
     expect(same, "the same observation gives the same responses, whatever was asked between")
 
 
 @_suite.add
-def _respond_learns_nothing(subject: _Subject) -> None:
+def _respond_learns_nothing(subject: LocalizerSubject) -> None:
     localizer, places = subject.learned()
     before = localizer.respond(places[0])
     localizer.respond(subject.unseen)
@@ -214,7 +158,7 @@ def _respond_learns_nothing(subject: _Subject) -> None:
 
 
 @_suite.add
-def _respond_needs_no_gps(subject: _Subject) -> None:
+def _respond_needs_no_gps(subject: LocalizerSubject) -> None:
     localizer, places = subject.learned()
     for place in places:
         seeing = localizer.respond(place)
@@ -226,7 +170,7 @@ def _respond_needs_no_gps(subject: _Subject) -> None:
 
 
 @_suite.add
-def _leaves_the_observation_alone(subject: _Subject) -> None:
+def _leaves_the_observation_alone(subject: LocalizerSubject) -> None:
     localizer, seen = subject.cleared(), subject.drive
     for observation in seen:
         localizer.learn(observation)
@@ -240,7 +184,7 @@ def _same(one: Mapping[str, Any], other: Mapping[str, Any]) -> bool:
 
 
 @_suite.add
-def _places_have_their_own_memory(subject: _Subject) -> None:
+def _places_have_their_own_memory(subject: LocalizerSubject) -> None:
     localizer, places = subject.learned()
     before = localizer.respond(subject.unseen)
     for place in places:
@@ -251,7 +195,7 @@ def _places_have_their_own_memory(subject: _Subject) -> None:
 
 
 @_suite.add
-def _accepts_a_uniform_frame(subject: _Subject) -> None:
+def _accepts_a_uniform_frame(subject: LocalizerSubject) -> None:
     for grey in (0, 128, 255):
         flat = Observation(**{**subject.unseen, "frame": flat_frame(grey)})
         localizer, places = subject.learned()
@@ -265,7 +209,7 @@ def _accepts_a_uniform_frame(subject: _Subject) -> None:
 
 
 @_suite.add
-def _clear_forgets(subject: _Subject) -> None:
+def _clear_forgets(subject: LocalizerSubject) -> None:
     localizer, _ = subject.learned()
     before = _answers(localizer, subject.drive)
     again, _ = subject.learned()
@@ -273,7 +217,7 @@ def _clear_forgets(subject: _Subject) -> None:
     expect(same, "after clear nothing is left: the same drive gives the same places and responses")
 
 
-def _descriptor(subject: _Subject) -> DescriptorLocalizer[Any]:
+def _descriptor(subject: LocalizerSubject) -> DescriptorLocalizer[Any]:
     """The fitted localizer, if it has what only some have."""
     if not isinstance(subject.fitted, DescriptorLocalizer):
         raise DoesNotApply("it has no describe and compare, which are optional")
@@ -281,7 +225,7 @@ def _descriptor(subject: _Subject) -> DescriptorLocalizer[Any]:
 
 
 @_suite.add
-def _respond_agrees_with_compare(subject: _Subject) -> None:
+def _respond_agrees_with_compare(subject: LocalizerSubject) -> None:
     localizer, places = _descriptor(subject), subject.learned()[1]
     streamed = _answers(localizer, places)
     described = [localizer.describe(_blind(place)) for place in places]
@@ -292,7 +236,7 @@ def _respond_agrees_with_compare(subject: _Subject) -> None:
 
 
 @_suite.add
-def _learn_agrees_with_compare(subject: _Subject) -> None:
+def _learn_agrees_with_compare(subject: LocalizerSubject) -> None:
     localizer, places = _descriptor(subject), subject.learned()[1]
     if localizer.recruiting != "vigilance":
         raise DoesNotApply("it recruits by road, whatever the responses")
