@@ -7,7 +7,7 @@ from typing import Annotated
 
 import typer
 
-__all__ = ["app", "check", "compare", "fit", "list_", "run", "score", "sweep", "table"]
+__all__ = ["app", "check", "claims", "compare", "fit", "list_", "run", "score", "sweep", "table"]
 
 app = typer.Typer(
     name="vprbench",
@@ -129,6 +129,22 @@ def compare(
     from vprbench.cli.comparing import compare_command
 
     compare_command(results, metric, reference, format)
+
+
+@app.command(epilog="Example: vprbench claims runs --format markdown")
+def claims(
+    folder: Annotated[Path, typer.Argument(help="Folder of auc-hsd.csv, global.csv, fit.csv, ...")] = Path("runs"),
+    data: Data = None,
+    format: Annotated[str, typer.Option(help="terminal, markdown, latex or csv.")] = "terminal",
+) -> None:
+    """Judge the paper's claims by what was measured: supported, not supported, or not testable on the data present.
+
+    Takes the sweeps auc-hsd and global with their traces, fit.csv with fit-timings.json, and frequency.csv; what is
+    not there leaves its claims untested. The roads' own figures come from KITTI's pose files.
+    """
+    from vprbench.cli.claiming import claims_command
+
+    claims_command(folder, data, format)
 
 
 @app.command(name="list", epilog="Example: vprbench list routes --data ~/kitti")
