@@ -7,7 +7,7 @@ from typing import Annotated
 
 import typer
 
-__all__ = ["app", "check", "claims", "compare", "fit", "list_", "run", "score", "sweep", "table"]
+__all__ = ["app", "check", "claims", "compare", "fit", "list_", "report", "run", "score", "sweep", "table"]
 
 app = typer.Typer(
     name="vprbench",
@@ -145,6 +145,23 @@ def claims(
     from vprbench.cli.claiming import claims_command
 
     claims_command(folder, data, format)
+
+
+@app.command(epilog="Example: vprbench report runs/streets.csv")
+def report(
+    results: Annotated[Path, typer.Argument(help="The .csv or .parquet of a sweep.")],
+    out: Annotated[Path | None, typer.Option(help="Folder of the report. Default: NAME.report beside it.")] = None,
+    data: Data = None,
+    routes: Routes = None,
+) -> None:
+    """Write a report of a sweep: one page with tables, curves, maps and frames, which opens in any browser.
+
+    Leaves OUT/report.html, which needs no other file, and what is in it for use elsewhere: OUT/figures/ (PNG and SVG)
+    and OUT/tables/ (Markdown, LaTeX and CSV). Frames are shown of the routes whose data are present.
+    """
+    from vprbench.cli.reporting import report_command
+
+    report_command(results, out, data, routes)
 
 
 @app.command(name="list", epilog="Example: vprbench list routes --data ~/kitti")
