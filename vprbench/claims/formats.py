@@ -15,7 +15,7 @@ from vprbench.claims.model import load_claims
 from vprbench.claims.rules import NOT_SUPPORTED, RULES, SUPPORTED
 from vprbench.tables.formats import LATEX, MARKDOWN
 
-__all__ = ["claim_lines", "counted", "to_latex", "to_markdown", "to_terminal"]
+__all__ = ["HEADS", "claim_lines", "counted", "to_latex", "to_markdown", "to_terminal"]
 
 HEADS = ("claim", "paper", "ours", "interval", "unit", "verdict", "measured on", "note")
 _STYLES = {SUPPORTED: "green", NOT_SUPPORTED: "red"}
@@ -37,8 +37,8 @@ def claim_lines(table: pd.DataFrame) -> list[tuple[str, ...]]:
             _interval(row["low"], row["high"]),
             str(row["unit"]),
             str(row["verdict"]),
-            str(row["measured_on"]) or "-",
-            str(row["note"]) or "-",
+            _text(row["measured_on"]),
+            _text(row["note"]),
         )
         for row in table.to_dict("records")
     ]
@@ -85,6 +85,11 @@ def to_latex(table: pd.DataFrame) -> str:
         r"\end{longtable}",
     ]
     return "\n".join(parts) + "\n"
+
+
+def _text(value: object) -> str:
+    """A text; a dash where there is none, which a CSV gives back as NaN."""
+    return value if isinstance(value, str) and value else "-"
 
 
 def _interval(low: float, high: float) -> str:

@@ -99,6 +99,7 @@ def test_one_agent_differs_from_nobody(results: ResultTable) -> None:
 
 def test_every_section_has_a_title_of_its_own(results: ResultTable) -> None:
     (results.folder / "small.fit.csv").write_text("encoder\nx\n")
+    (results.folder / "small.claims.csv").write_text("id\nx\n")
     given = material(results)
     titles = [section.title for make in SECTIONS if (section := make(given)) is not None]
     assert len(set(titles)) == len(SECTIONS)

@@ -10,6 +10,7 @@ from collections.abc import Callable
 from vprbench.report.material import Material
 from vprbench.report.section import Section
 from vprbench.report.sections.appendices import appendices
+from vprbench.report.sections.claims import claims
 from vprbench.report.sections.differences import differences
 from vprbench.report.sections.distances import by_distance
 from vprbench.report.sections.errors import errors_in_metres
@@ -33,6 +34,7 @@ SECTIONS: tuple[Callable[[Material], Section | None], ...] = (
     errors_in_metres,
     maps,
     frames,
+    claims,
     appendices,
     failures,
     provenance,

@@ -1,4 +1,4 @@
-"""Whatever other tables lie beside the results: how encoders fitted, timings, claims."""
+"""Whatever other tables lie beside the results: how encoders fitted, timings."""
 
 from __future__ import annotations
 
@@ -7,15 +7,17 @@ import pandas as pd
 from vprbench.report.markup import fragment
 from vprbench.report.material import Material
 from vprbench.report.section import Section
+from vprbench.report.sections.claims import LABEL
 
 __all__ = ["appendices"]
 
 
 def appendices(material: Material) -> Section | None:
-    """Each NAME.LABEL.csv as it stands."""
-    if not material.appendices:
+    """Each NAME.LABEL.csv as it stands; the claims have a section of their own."""
+    others = {label: frame for label, frame in material.appendices.items() if label != LABEL}
+    if not others:
         return None
-    tables = [_plain(material.name, label, frame) for label, frame in material.appendices.items()]
+    tables = [_plain(material.name, label, frame) for label, frame in others.items()]
     return Section("Beside these results", fragment("appendices", tables=tables))
 
 
