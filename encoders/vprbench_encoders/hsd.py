@@ -34,7 +34,7 @@ from vprbench_encoders.whitening import CUTOFF
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
-__all__ = ["HSD", "hsd_12", "hsd_15", "hsd_15_30", "hsd_18", "hsd_21", "hsd_24", "hsd_30"]
+__all__ = ["HSD", "hsd_12", "hsd_15", "hsd_15_30", "hsd_18", "hsd_21", "hsd_24", "hsd_30", "hsd_plus"]
 
 
 @dataclass(eq=False, repr=False)
@@ -288,3 +288,8 @@ hsd_21 = partial(HSD, size=21)
 hsd_24 = partial(HSD, size=24)
 hsd_30 = partial(HSD, size=30)
 hsd_15_30 = partial(HSD, size=15, map_size=30)
+
+# Ours, chosen on drawn streets and warped frames (docs/hsd.md): the first layer alone, more of it and in more places.
+hsd_plus = partial(
+    HSD, size=12, map_size=24, signature="c1", picks=(20, 5), window=72, jitter=12, points=50, radius=14.0, pool=3
+)

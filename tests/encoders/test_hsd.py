@@ -56,6 +56,14 @@ def test_each_configuration_of_the_paper_has_a_name(name: str, size: int, map_si
     assert signatures(encoder).shape == (25, values)
 
 
+def test_ours_is_one_layer_pooled_to_64_values() -> None:
+    encoder = build_encoder({"name": "hsd-plus", "steps": 1, "epochs": 1}, seed=4)
+    encoder.fit(FRAMES[:1])
+    signatures = encoder.encode(textured_frame(1)).signatures
+    assert signatures.shape[0] > 25 and signatures.shape[1] == 64
+    assert ((signatures > 0).sum(axis=1) <= 20).all()
+
+
 @pytest.mark.parametrize("protocol", [Encoder, Measured, Stepwise, Storable])
 def test_it_is_an_encoder_that_learns_stepwise_and_can_be_stored_and_measured(protocol: type) -> None:
     assert isinstance(HSD(), protocol)
