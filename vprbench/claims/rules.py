@@ -34,7 +34,7 @@ RULES = (
     "Not supported means that these data do not show it; the note says whether they show the opposite, the direction "
     "only, or no difference.",
     "Where a stand-in was measured for the paper's roads, the verdict is about the stand-in. What belongs to the "
-    "paper's own machine or road is not testable without them, and shown beside ours all the same.",
+    "paper's own machine or road is not testable without it; ours is shown all the same.",
 )
 
 
