@@ -87,10 +87,15 @@ class ResultTable:
         return typed(pd.DataFrame(list(self._rows.values()))).sort_values(SORT, ignore_index=True)
 
     @contextmanager
-    def writing(self, question: Path, cells: Collection[Cell]) -> Iterator[None]:
+    def writing(self, question: Path, cells: Collection[Cell], routes_file: Path | None = None) -> Iterator[None]:
         """While entered, this process alone writes here; the question is laid beside its answer.
 
         Rows that answer no cell of the question move, with the whole table, to NAME.previous.csv.
+
+        Args:
+            question: the TOML of the sweep.
+            cells: all that it asks for.
+            routes_file: which the question names, relative to it; laid beside the copy, which so still finds it.
 
         Raises:
             ConfigError: another process is writing, or the TOML there is not an earlier question of this table.
@@ -100,6 +105,7 @@ class ResultTable:
             self.folder.mkdir(parents=True, exist_ok=True)
             with FileLock(self.folder / f".{self.name}.lock", timeout=0):
                 self._ask(question, cells)
+                self._lay_routes(question.parent, routes_file)
                 yield
         except Timeout as error:
             raise ConfigError(f"another sweep is writing {self.csv}: wait for it, or choose another --out") from error
@@ -127,6 +133,15 @@ class ResultTable:
                 del self._rows[cell]
             self._save()
         with replacing(self.question) as path:
+            path.write_bytes(text)
+
+    def _lay_routes(self, source: Path, routes_file: Path | None) -> None:
+        """Copy a routes file to where the question beside the answer looks for it, unless that is outside."""
+        if routes_file is None or routes_file.is_absolute() or ".." in routes_file.parts:
+            return
+        text, copy = (source / routes_file).read_bytes(), self.folder / routes_file
+        copy.parent.mkdir(parents=True, exist_ok=True)
+        with replacing(copy) as path:
             path.write_bytes(text)
 
     def _save(self) -> None:

@@ -127,7 +127,7 @@ def matching(cells: Sequence[Cell], pattern: str) -> list[Cell]:
 
 
 def builtin_sweeps() -> dict[str, Path]:
-    """The sweeps that come with vprbench, by name."""
+    """The sweeps that come with vprbench, by name; the folder routes/ beside them holds routes of their own."""
     folder = Path(str(files("vprbench") / "sweeps"))
     return {path.stem: path for path in sorted(folder.glob("*.toml"))}
 

@@ -47,6 +47,9 @@ def sweep(
     overwrite: Annotated[bool, typer.Option("--overwrite", help="Measure again what is already there.")] = False,
     dry_run: Annotated[bool, typer.Option("--dry-run", help="Only say which cells would run, and how long.")] = False,
     cache: Cache = None,
+    present: Annotated[
+        bool, typer.Option("--present", help="Leave out the routes whose data are not all here, and say which.")
+    ] = False,
 ) -> None:
     """Measure every cell of a sweep (route x sampling distance x agent x seed) that is not yet in its table.
 
@@ -56,7 +59,7 @@ def sweep(
     """
     from vprbench.cli.sweeping import Request, sweep_command
 
-    request = Request(name, out, data, routes, jobs, filter, timeout, overwrite, dry_run, cache)
+    request = Request(name, out, data, routes, jobs, filter, timeout, overwrite, dry_run, cache, present)
     raise typer.Exit(sweep_command(request))
 
 

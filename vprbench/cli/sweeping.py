@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Collection, Sequence
 from dataclasses import dataclass
 from functools import cache
 from pathlib import Path
@@ -18,6 +18,7 @@ from vprbench.errors import DataError
 from vprbench.machine import cores
 from vprbench.plan import Plan, plan
 from vprbench.pool import Progress, Settings, run_all
+from vprbench.presence import shortfalls
 from vprbench.provenance import data_checksum, versions
 from vprbench.results import ResultTable
 from vprbench.sweep import Job, Sweep, jobs, load_sweep, matching
@@ -40,6 +41,7 @@ class Request:
     overwrite: bool
     dry_run: bool
     cache: Path | None
+    present: bool = False
 
 
 def sweep_command(request: Request) -> int:
@@ -48,7 +50,8 @@ def sweep_command(request: Request) -> int:
     question, sweep = load_sweep(request.name)
     table = ResultTable(request.out, question.stem)
     settings = _settings(request, sweep, question)
-    steps = _plan(request, sweep, table, settings)
+    absent = _left_out(sweep, settings, console) if request.present else frozenset[str]()
+    steps = _plan(request, sweep, table, settings, absent)
     todo = _longest_first(jobs(sweep, steps.todo), settings)
     console.print(_announce(question.stem, steps, table, sweep, settings), highlight=False)
     if request.dry_run:
@@ -57,7 +60,7 @@ def sweep_command(request: Request) -> int:
         print_estimate(todo, settings, Console())
         return 0
     try:
-        with table.writing(question, list(sweep.cells())):
+        with table.writing(question, list(sweep.cells()), sweep.routes_file):
             failed = _measure(todo, settings, table, console)
     except KeyboardInterrupt:
         console.print("interrupted: what was finished is kept, and the same command goes on from there")
@@ -73,7 +76,17 @@ def _settings(request: Request, sweep: Sweep, question: Path) -> Settings:
     return Settings(request.jobs or cores(), request.timeout, request.data, own, store)
 
 
-def _plan(request: Request, sweep: Sweep, table: ResultTable, settings: Settings) -> Plan:
+def _left_out(sweep: Sweep, settings: Settings, console: Console) -> frozenset[str]:
+    """The routes whose data are not all here, each told with the reason; DataError where that is every one."""
+    absent = shortfalls(sweep.routes, settings.data, settings.routes_file)
+    for route, reason in absent.items():
+        console.print(escape(f"left out: {route} needs {reason}"), highlight=False, soft_wrap=True)
+    if absent.keys() >= set(sweep.routes):
+        raise DataError("no route of this sweep has all its data here, for the reasons above")
+    return frozenset(absent)
+
+
+def _plan(request: Request, sweep: Sweep, table: ResultTable, settings: Settings, absent: Collection[str] = ()) -> Plan:
     """What is to be measured; data root and routes must be known before anything runs."""
     data_root(settings.data)
     known = catalogue(settings.routes_file)
@@ -82,6 +95,7 @@ def _plan(request: Request, sweep: Sweep, table: ResultTable, settings: Settings
     cells = list(sweep.cells())
     if request.filter is not None:
         cells = matching(cells, request.filter)
+    cells = [cell for cell in cells if cell.route not in absent]
 
     @cache
     def checksum(route: str) -> str:
