@@ -5,13 +5,15 @@ from __future__ import annotations
 from abc import ABC, abstractmethod
 from collections import defaultdict
 from collections.abc import Mapping
+from dataclasses import replace
 from itertools import combinations
 from pathlib import Path
 from typing import Annotated, Literal
 
-from pydantic import BaseModel, BeforeValidator, ConfigDict, model_validator
+from pydantic import BaseModel, BeforeValidator, ConfigDict, Field, model_validator
 
 from vprbench.availability import Need
+from vprbench.entries.compass import noisy_compass
 from vprbench.frame_ranges import FrameRun, format_ranges
 from vprbench.route import Route
 
@@ -33,20 +35,31 @@ class Entry(BaseModel, ABC):
     Attributes:
         environment: the kind of road.
         split: "report" for results, "tuning" for choosing parameters, "control" for one question.
+        heading_noise_deg: standard deviation of the error of the test drive's headings, degrees, each frame's apart.
+        heading_noise_seed: says which errors.
     """
 
     model_config = ConfigDict(extra="forbid", frozen=True, allow_inf_nan=False)
 
     environment: str = ""
     split: Split = "report"
+    heading_noise_deg: Annotated[float, Field(ge=0)] = 0.0
+    heading_noise_seed: Annotated[int, Field(ge=0)] = 0
 
     @abstractmethod
     def needs(self, root: Path) -> tuple[Need, ...]:
         """What must be on disk, under the data root or elsewhere."""
 
     @abstractmethod
+    def read(self, name: str, root: Path) -> Route:
+        """The route as recorded; its frames stay on disk until they are asked for."""
+
     def load(self, name: str, root: Path) -> Route:
-        """The route; its frames stay on disk until they are asked for."""
+        """The route, its test drive's compass as good as the entry says."""
+        route = self.read(name, root)
+        if not self.heading_noise_deg:
+            return route
+        return replace(route, test=noisy_compass(route.test, self.heading_noise_deg, self.heading_noise_seed))
 
 
 class RunsEntry(Entry):

@@ -76,7 +76,7 @@ class FolderEntry(Entry):
         """What must be on disk."""
         return tuple(drive.need() for drive in self._drives())
 
-    def load(self, name: str, root: Path) -> Route:
+    def read(self, name: str, root: Path) -> Route:
         """The route; with latitude and longitude, in the local plane about the learn drive's first fix."""
         drives = self._drives()
         for a, b in combinations(drives, 2):

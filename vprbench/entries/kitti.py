@@ -41,7 +41,7 @@ class KittiOdometryEntry(RunsEntry):
         """What must be on disk."""
         return tuple(OdometrySequence(root, s, self.camera).need(f) for s, f in self.frames().items())
 
-    def load(self, name: str, root: Path) -> Route:
+    def read(self, name: str, root: Path) -> Route:
         """The route, on the ground plane of its sequence."""
         sequences = {s: OdometrySequence(root, s, self.camera) for s in self.frames()}
         learn, test, *training = (sequences[run.sequence].traverse(run) for run in self.runs)
@@ -68,7 +68,7 @@ class KittiRawEntry(RunsEntry):
         """What must be on disk."""
         return tuple(RawDrive(root, drive, self.camera).need(f) for drive, f in self.frames().items())
 
-    def load(self, name: str, root: Path) -> Route:
+    def read(self, name: str, root: Path) -> Route:
         """The route, in the local plane about the learn drive's first fix."""
         drives = {drive: RawDrive(root, drive, self.camera) for drive in self.frames()}
         origin = drives[self.learn.sequence].fixes([self.learn.first])[0, :2]

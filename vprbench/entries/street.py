@@ -42,7 +42,7 @@ class StreetEntry(Entry):
         """Nothing: it is drawn."""
         return ()
 
-    def load(self, name: str, root: Path) -> Route:
+    def read(self, name: str, root: Path) -> Route:
         """The route; its frames are drawn when they are asked for."""
         # Drawing needs a compiled renderer, which the other readers should not wait for.
         from vprbench.street import street_route
