@@ -7,7 +7,7 @@ from typing import Annotated
 
 import typer
 
-__all__ = ["app", "check", "claims", "compare", "fit", "list_", "report", "run", "score", "sweep", "table"]
+__all__ = ["app", "check", "claims", "compare", "fit", "frequency", "list_", "report", "run", "score", "sweep", "table"]
 
 app = typer.Typer(
     name="vprbench",
@@ -105,6 +105,35 @@ def fit(
     from vprbench.cli.fitting import Fitting, fit_command
 
     raise typer.Exit(fit_command(Fitting(encoders, route, seeds, out, data, routes, cache, refit, figures)))
+
+
+@app.command(epilog="Example: vprbench frequency lpmp hsd-15-30 cohog --route Street-Wide --places 10,100")
+def frequency(
+    route: Annotated[str, typer.Option(help="The route whose frames are learned and asked for.")],
+    agents: Annotated[
+        list[str] | None,
+        typer.Argument(help="lpmp, hsd-12 to hsd-30, hsd-15-30, cohog (default: all); or insides of TOML tables."),
+    ] = None,
+    places: Annotated[
+        str | None, typer.Option(help="Numbers of places, with commas between. Default: the paper's, 1 to 1000.")
+    ] = None,
+    rounds: Annotated[int | None, typer.Option(min=1, help="How often each is timed. Default: 15.")] = None,
+    seed: Annotated[int, typer.Option(min=0, help="For agents that learn from random numbers.")] = 0,
+    out: Annotated[Path, typer.Option(help="Folder of the table.")] = Path("runs"),
+    data: Data = None,
+    routes: Routes = None,
+    cache: Cache = None,
+    figures: Annotated[bool, typer.Option("--figures", help="Draw the curves (needs the figures extra).")] = False,
+) -> None:
+    """Time queries against the number of places learned, on one thread: the paper's figure of frequency.
+
+    Leaves OUT/frequency.csv (medians and quartiles, encoding and the rest apart), OUT/frequency.json (the machine and
+    the rules) and, if asked for, OUT/figures/. Stop it when you like: finished rounds count.
+    """
+    from vprbench.cli.timing import Timing, frequency_command
+
+    request = Timing(agents or [], route, places, rounds, seed, out, data, routes, cache, figures)
+    raise typer.Exit(frequency_command(request))
 
 
 @app.command(epilog="Example: vprbench table runs/streets.csv --columns route --metric auc_all --format latex")
