@@ -26,6 +26,9 @@ _FILLED = 0.86
 # Inches of the figure that hold no bars, and the least width of a bar with its number in it.
 _MARGIN, _FIGURE = 0.7, 0.24
 
+# Inches that a letter of a group's name takes.
+_LETTER = 0.072
+
 _AXES = {"route": "", "sampling_distance_m": "sampling distance, m"}
 
 # What a cell has beside its agent.
@@ -37,6 +40,9 @@ def score_bars(
     metric: str = "auc",
     *,
     by: str | None = None,
+    title: str = "",
+    names: Mapping[str, str] | None = None,
+    axis: str | None = None,
     colours: Mapping[str, str] | None = None,
     paper: Mapping[str, float] | None = None,
 ) -> Figure:
@@ -46,6 +52,9 @@ def score_bars(
         rows: finished cells of a result table.
         metric: a column of them, 0..1.
         by: "route" or "sampling_distance_m": a group of bars for each; none: one bar an agent.
+        title: of the figure.
+        names: what to call groups, where that is not what the column holds.
+        axis: what the groups are.
         colours: of every agent; those of `agent_colours`, if none are given.
         paper: what the paper states of agents, in the unit of the metric; where there are no groups.
 
@@ -64,10 +73,13 @@ def score_bars(
         # Room for whiskers, though no score is above 100.
         axes.set(ylim=(0.0, 104.0), yticks=range(0, 101, 20), ylabel=f"{_label(metric).split(',')[0]}, %")
         axes.grid(True, axis="y")
+        axes.set_title(plain(title))
         if by is None:
             _draw_alone(axes, rows, metric, colours, paper or {})
         else:
             _draw_groups(axes, rows, metric, by, colours)
+            _name_groups(axes, _groups(rows, by), names or {})
+            axes.set_xlabel(_AXES.get(by, plain(by)) if axis is None else axis)
             show_legend(figure, colours, agents)
         quoted = by is None and not set(paper or {}).isdisjoint(agents)
         caption(
@@ -92,20 +104,30 @@ def _draw_alone(
     axes.set_xlim(-0.6, len(agents) - 0.4)
 
 
+def _groups(rows: pd.DataFrame, by: str) -> Sequence[Any]:
+    """The values of a column: distances rising, others in the order of the rows."""
+    return sorted(rows[by].unique()) if by == "sampling_distance_m" else distinct(rows[by])
+
+
 def _draw_groups(axes: Axes, rows: pd.DataFrame, metric: str, by: str, colours: Mapping[str, str]) -> None:
     """The agents' bars side by side at each value of a column."""
-    agents = distinct(rows["agent"])
-    groups: Sequence[Any] = sorted(rows[by].unique()) if by == "sampling_distance_m" else distinct(rows[by])
+    agents, groups = distinct(rows["agent"]), _groups(rows, by)
     width = _FILLED / len(agents)
     room = _room(axes, len(groups)) * width
     for place, group in enumerate(groups):
         for turn, agent in enumerate(agents):
             values = _values(rows[(rows[by] == group) & (rows["agent"] == agent)], metric)
             _bar(axes, place + (turn - (len(agents) - 1) / 2) * width, 0.92 * width, values, colours[agent], room)
-    names = [f"{group:g}" if isinstance(group, float) else plain(str(group)) for group in groups]
-    axes.set_xticks(range(len(groups)), names)
+
+
+def _name_groups(axes: Axes, groups: Sequence[Any], names: Mapping[str, str]) -> None:
+    """Write the groups' names below them, slanting where they would touch."""
+    shown = [f"{group:g}" if isinstance(group, float) else str(group) for group in groups]
+    shown = [plain(names.get(name, name)) for name in shown]
+    slant = max(map(len, shown)) * _LETTER > _room(axes, len(groups))
+    look: dict[str, Any] = {"rotation": 25, "ha": "right", "rotation_mode": "anchor"} if slant else {}
+    axes.set_xticks(range(len(groups)), shown, **look)
     axes.tick_params(axis="x", length=0)
-    axes.set_xlabel(_AXES.get(by, plain(by)))
     axes.set_xlim(-0.55, len(groups) - 0.45)
 
 

@@ -94,6 +94,16 @@ def test_groups_of_routes_keep_the_order_of_the_rows() -> None:
     assert len(bars(axes)) == 3
 
 
+def test_groups_and_the_axis_can_be_named() -> None:
+    (axes,) = score_bars(ROWS, by="route", names={"near": "2 m"}, axis="offset", title="$t$").axes
+    assert names(axes) == ["far", "2 m"]
+    assert axes.get_xlabel() == "offset"
+    assert axes.get_title(loc="left") == r"\$t\$"
+    assert {label.get_rotation() for label in axes.get_xticklabels()} == {0}
+    many = pd.concat([ROWS.assign(route=f"a road with a name {turn}") for turn in range(9)])
+    assert {label.get_rotation() for label in score_bars(many, by="route").axes[0].get_xticklabels()} == {25}
+
+
 def test_what_the_paper_states_stands_beside_the_bars_of_those_agents() -> None:
     figure = score_bars(ROWS, paper={"zeta": 0.85, "absent": 0.5})
     diamonds = [line for line in figure.axes[0].lines if line.get_marker() == "D"]
