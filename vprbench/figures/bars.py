@@ -167,7 +167,8 @@ def _explained(rows: pd.DataFrame, metric: str, by: str | None) -> str:
     counted = ", ".join(f"{count} {name}{'' if count == 1 else 's'}" for name, count in over)
     sizes = rows.dropna(subset=metric).groupby([*([by] if by else []), "agent"], sort=False).size()
     cells = f"{sizes.min()}" if sizes.min() == sizes.max() else f"{sizes.min()} to {sizes.max()}"
+    one_seed = "; one seed where nothing is random" if rows.groupby("agent")["seed"].nunique().nunique() > 1 else ""
     return (
-        f"{_label(metric)[0].upper()}{_label(metric)[1:]}. Bars: means over {cells} cells ({counted}; one seed where "
-        "nothing is random). Whiskers: their standard deviation. Dots: cells."
+        f"{_label(metric)[0].upper()}{_label(metric)[1:]}. Bars: means over {cells} cells ({counted}{one_seed}). "
+        "Whiskers: their standard deviation. Dots: cells."
     )

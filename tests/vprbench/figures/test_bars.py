@@ -116,6 +116,7 @@ def test_the_caption_says_over_what_the_means_are() -> None:
     assert "means over 1 to 4 cells (2 routes, 2 distances, 2 seeds;" in written(score_bars(ROWS))
     assert "means over 1 to 2 cells (2 routes, 2 seeds;" in written(score_bars(ROWS, by="sampling_distance_m"))
     assert "recall over the correct top-1s." in written(score_bars(ROWS))
+    assert "nothing is random" not in written(score_bars(ROWS[ROWS["agent"] == "zeta"]))
     by_metric_rule = score_bars(ROWS.rename(columns={"auc": "auc_all_metric"}), "auc_all_metric")
     assert "recall over all queries, by the metric rule." in written(by_metric_rule)
 
