@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 from vprbench.errors import ConfigError
 from vprbench.types import Frame, Landmarks
 from vprbench_encoders.focus import FocusDetector
-from vprbench_encoders.l1 import mean_l1, mean_l1_pairs
+from vprbench_encoders.l1 import TOGETHER, mean_l1, mean_l1_pairs, mean_l1_pairs_within
 
 __all__ = [
     "LogPolar",
@@ -138,6 +138,20 @@ class LogPolar:
     ) -> Float32[np.ndarray, " pairs"]:
         """The same as `match`, for chosen pairs only."""
         return np.float32(1) - mean_l1_pairs(queries, memory, query_index, memory_index)
+
+    def match_pairs_above(
+        self,
+        queries: Float32[np.ndarray, "points size"],
+        memory: Float32[np.ndarray, "units size"],
+        query_index: Int64[np.ndarray, " pairs"],
+        memory_index: Int64[np.ndarray, " pairs"],
+        floor: float,
+    ) -> Float32[np.ndarray, " pairs"]:
+        """What `match_pairs` gives, wherever that is above `floor`; elsewhere any value that is not above it."""
+        if self.size % TOGETHER:
+            return self.match_pairs(queries, memory, query_index, memory_index)
+        pairs = queries, memory, query_index, memory_index
+        return np.float32(1) - mean_l1_pairs_within(*pairs, limit=1 - floor, side=self.size)
 
     def _shrink(self, maps: Float32[np.ndarray, "points 2916"]) -> Float32[np.ndarray, "points size2"]:
         if self.size == SAMPLES:

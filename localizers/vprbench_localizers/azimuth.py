@@ -9,9 +9,9 @@ from numpy.typing import NDArray
 
 from vprbench.geodesy import wrap
 
-__all__ = ["agreeing_pairs", "azimuths"]
+__all__ = ["agreeing_pairs", "agreement", "azimuths"]
 
-Pairs = tuple[Int64[np.ndarray, " pairs"], Int64[np.ndarray, " pairs"], Float32[np.ndarray, " pairs"]]
+Pairs = tuple[Int64[np.ndarray, " pairs"], Int64[np.ndarray, " pairs"]]
 
 
 def azimuths(
@@ -29,43 +29,45 @@ def azimuths(
 
 
 @njit(cache=True)
+def _turn(one: np.float32, other: np.float32) -> float:
+    """The angle between two azimuths in -pi..pi, the short way round."""
+    turn = abs(one - other)
+    # The smaller of both ways round, since a branch that is hard to predict would cost more than all else here.
+    return min(float(turn), float(abs(turn - 2 * np.float32(np.pi))))
+
+
+@njit(cache=True)
+def agreement(one: np.float32, other: np.float32, width: float) -> np.float32:
+    """How well two azimuths in -pi..pi agree: exp(-(theta_p - theta_m)^2 / 2 width^2); an infinite width lets all."""
+    return np.float32(np.exp(-0.5 * (_turn(one, other) / width) ** 2))
+
+
+@njit(cache=True)
 def _agreeing_pairs(
-    queries: NDArray[np.float32], units: NDArray[np.float32], width: float, reach: float
-) -> tuple[NDArray[np.int64], NDArray[np.int64], NDArray[np.float32]]:
-    pi = np.float32(np.pi)
-    query_index = np.empty(len(queries) * len(units), np.int64)
+    queries: NDArray[np.float32], units: NDArray[np.float32], reach: float
+) -> tuple[NDArray[np.int64], NDArray[np.int64]]:
+    # One more than can be found: a pair that does not agree is written too, and then written over.
+    query_index = np.empty(len(queries) * len(units) + 1, np.int64)
     unit_index = np.empty_like(query_index)
-    agreement = np.empty(len(query_index), np.float32)
     count = 0
     for m in range(len(units)):
         for p in range(len(queries)):
-            turn = abs(queries[p] - units[m])
-            if turn > pi:
-                turn = abs(turn - 2 * pi)
-            if turn <= reach:
-                query_index[count], unit_index[count] = p, m
-                agreement[count] = np.exp(-0.5 * (turn / width) ** 2)
-                count += 1
-    return query_index[:count], unit_index[:count], agreement[:count]
+            query_index[count], unit_index[count] = p, m
+            count += _turn(queries[p], units[m]) <= reach
+    return query_index[:count], unit_index[:count]
 
 
 def agreeing_pairs(
-    queries: Float32[np.ndarray, " points"],
-    units: Float32[np.ndarray, " units"],
-    width: float,
-    reach: float,
+    queries: Float32[np.ndarray, " points"], units: Float32[np.ndarray, " units"], reach: float
 ) -> Pairs:
-    """Which pairs (query p, unit m) of azimuths agree, and how well: exp(-(theta_p - theta_m)^2 / 2 width^2).
-
-    Pairs more than `reach` apart do not agree at all and are left out. An infinite width lets all agree fully.
+    """Which pairs (query p, unit m) of azimuths are at most `reach` apart.
 
     Args:
         queries: azimuths in -pi..pi.
         units: azimuths in -pi..pi.
-        width: of the Gaussian, radians.
         reach: largest difference that agrees, radians.
 
     Returns:
-        The query index, unit index and agreement (0..1) of each pair, unit by unit.
+        The query index and unit index of each pair, unit by unit.
     """
-    return _agreeing_pairs(queries, units, width, reach)
+    return _agreeing_pairs(queries, units, reach)

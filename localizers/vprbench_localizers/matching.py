@@ -9,9 +9,9 @@ import numpy as np
 from jaxtyping import Float32, Int64
 
 from vprbench.protocols import Encoder
-from vprbench_localizers.unit_memory import UnitMemory
+from vprbench_localizers.unit_memory import Units
 
-__all__ = ["PairEncoder", "match_pairs"]
+__all__ = ["PairEncoder", "PairMatcher", "ThresholdEncoder", "pair_matcher"]
 
 
 @runtime_checkable
@@ -29,22 +29,58 @@ class PairEncoder(Encoder, Protocol):
         ...
 
 
-def match_pairs(
-    encoder: Encoder,
-    queries: Float32[np.ndarray, "points size"],
-    memory: UnitMemory,
-    query_index: Int64[np.ndarray, " pairs"],
-    memory_index: Int64[np.ndarray, " pairs"],
-) -> Float32[np.ndarray, " pairs"]:
-    """How alike each pair (queries[query_index[i]], memory unit memory_index[i]) is.
+@runtime_checkable
+class ThresholdEncoder(PairEncoder, Protocol):
+    """One that is faster still where only matches above some value count: optional."""
 
-    An encoder that only has `match` compares one place at a time: matrix products round differently with the
-    shape of their operands, and a place must respond the same whichever other places there are.
+    def match_pairs_above(
+        self,
+        queries: Float32[np.ndarray, "points size"],
+        memory: Float32[np.ndarray, "units size"],
+        query_index: Int64[np.ndarray, " pairs"],
+        memory_index: Int64[np.ndarray, " pairs"],
+        floor: float,
+    ) -> Float32[np.ndarray, " pairs"]:
+        """What `match_pairs` gives, wherever that is above `floor`; elsewhere any value that is not above it."""
+        ...
+
+
+class PairMatcher(Protocol):
+    """How alike each pair (queries[query_index[i]], units.signatures[unit_index[i]]) is, where above a floor."""
+
+    def __call__(
+        self,
+        queries: Float32[np.ndarray, "points size"],
+        units: Units,
+        query_index: Int64[np.ndarray, " pairs"],
+        unit_index: Int64[np.ndarray, " pairs"],
+    ) -> Float32[np.ndarray, " pairs"]:
+        """The match of each pair; where it is not above the floor, any value that is not either."""
+        ...
+
+
+def pair_matcher(encoder: Encoder, floor: float) -> PairMatcher:
+    """The fastest comparison of chosen pairs that an encoder has.
+
+    One that only has `match` compares one place at a time: matrix products round differently with the shape of their
+    operands, and a place must respond the same whichever other places there are.
     """
-    if isinstance(encoder, PairEncoder):
-        return encoder.match_pairs(queries, memory.signatures, query_index, memory_index)
-    if not len(query_index):
-        return np.empty(0, np.float32)
-    spans = [slice(a, b) for a, b in pairwise(memory.starts) if a < b]
-    dense = np.concatenate([encoder.match(queries, memory.signatures[span]) for span in spans], axis=1)
-    return dense[query_index, memory_index]
+    # By name, since Python takes longer to check a protocol than Max-Pi takes to compare a place.
+    if above := getattr(encoder, "match_pairs_above", None):
+        return lambda queries, units, p, m: above(queries, units.signatures, p, m, floor)
+    if pairs := getattr(encoder, "match_pairs", None):
+        return lambda queries, units, p, m: pairs(queries, units.signatures, p, m)
+
+    def of_all(
+        queries: Float32[np.ndarray, "points size"],
+        units: Units,
+        query_index: Int64[np.ndarray, " pairs"],
+        unit_index: Int64[np.ndarray, " pairs"],
+    ) -> Float32[np.ndarray, " pairs"]:
+        if not len(query_index):
+            return np.empty(0, np.float32)
+        spans = [slice(a, b) for a, b in pairwise(units.starts) if a < b]
+        dense = np.concatenate([encoder.match(queries, units.signatures[span]) for span in spans], axis=1)
+        return dense[query_index, unit_index]
+
+    return of_all

@@ -18,9 +18,9 @@ from numpy.typing import NDArray
 from vprbench.errors import ConfigError
 from vprbench.protocols import Encoder, Recruiting
 from vprbench.types import Observation, Responses
-from vprbench_localizers.azimuth import agreeing_pairs, azimuths
+from vprbench_localizers.azimuth import agreeing_pairs, agreement, azimuths
 from vprbench_localizers.calibration import Calibration
-from vprbench_localizers.matching import match_pairs
+from vprbench_localizers.matching import pair_matcher
 from vprbench_localizers.unit_memory import UnitMemory, View
 
 __all__ = ["MaxPi"]
@@ -28,23 +28,29 @@ __all__ = ["MaxPi"]
 # Places compared at a time: bounds the memory that `compare` copies; the responses do not depend on it.
 BLOCK = 64
 
+# Places whose pairs are listed at a time: few enough that the lists stay in the cache.
+TOGETHER = 16
+
 
 @njit(cache=True)
 def _place_responses(
+    pairs: tuple[NDArray[np.int64], NDArray[np.int64]],
     matches: NDArray[np.float32],
-    agreement: NDArray[np.float32],
-    unit_index: NDArray[np.int64],
+    queries: NDArray[np.float32],
+    units: NDArray[np.float32],
     starts: NDArray[np.int64],
+    width: float,
     threshold: float,
 ) -> NDArray[np.float32]:
-    """Mean over each place's units of max over pairs of min(1, max(0, s - RT) / (1 - RT)) * agreement."""
-    activity = np.zeros(starts[-1], np.float32)
+    """Mean over each place's units of max over pairs of min(1, max(0, s - RT) / (1 - RT)) * agreement of azimuths."""
+    activity = np.zeros(len(units), np.float32)
     scale = np.float32(1) - np.float32(threshold)
     for pair in range(len(matches)):
         recognised = (matches[pair] - np.float32(threshold)) / scale
         if recognised > 0:
-            product = min(recognised, np.float32(1)) * agreement[pair]
-            activity[unit_index[pair]] = max(activity[unit_index[pair]], product)
+            p, m = pairs[0][pair], pairs[1][pair]
+            product = min(recognised, np.float32(1)) * agreement(queries[p], units[m], width)
+            activity[m] = max(activity[m], product)
     responses = np.zeros(len(starts) - 1, np.float32)
     for place in range(len(responses)):
         first, end = starts[place], starts[place + 1]
@@ -150,9 +156,15 @@ class MaxPi:
             raise ConfigError("max-pi: no recognition threshold: call fit(drives), or give recognition_threshold")
         if not (memory.units and len(query.azimuths)):
             return np.zeros(len(memory), np.float32)
-        query_index, unit_index, agreement = agreeing_pairs(query.azimuths, memory.azimuths, self._width, self._reach)
-        matches = match_pairs(self.encoder, query.signatures, memory, query_index, unit_index)
-        return _place_responses(matches, agreement, unit_index, memory.starts, self.recognition_threshold)
+        matcher = pair_matcher(self.encoder, self.recognition_threshold)
+        responses = np.empty(len(memory), np.float32)
+        for first, units in zip(range(0, len(memory), TOGETHER), memory.blocks(TOGETHER), strict=True):
+            pairs = agreeing_pairs(query.azimuths, units.azimuths, self._reach)
+            matches = matcher(query.signatures, units, *pairs)
+            responses[first : first + TOGETHER] = _place_responses(
+                pairs, matches, query.azimuths, units.azimuths, units.starts, self._width, self.recognition_threshold
+            )
+        return responses
 
 
 def _require(valid: bool, rule: str, value: object) -> None:

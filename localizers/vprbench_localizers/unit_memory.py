@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Iterator
 from typing import NamedTuple, Self
 
 import numpy as np
@@ -10,7 +10,7 @@ from jaxtyping import Float32, Int64
 
 from vprbench.errors import PluginError
 
-__all__ = ["UnitMemory", "View"]
+__all__ = ["UnitMemory", "Units", "View"]
 
 
 class View(NamedTuple):
@@ -23,6 +23,20 @@ class View(NamedTuple):
 
     signatures: Float32[np.ndarray, "points size"]
     azimuths: Float32[np.ndarray, " points"]
+
+
+class Units(NamedTuple):
+    """The units of some places in a row.
+
+    Shapes and units:
+        signatures: float32 (units, size).
+        azimuths: float32 (units,), radians in -pi..pi.
+        starts: int64 (places + 1,), the first unit of each place, and the end of the last.
+    """
+
+    signatures: Float32[np.ndarray, "units size"]
+    azimuths: Float32[np.ndarray, " units"]
+    starts: Int64[np.ndarray, " places_and_end"]
 
 
 class UnitMemory:
@@ -60,6 +74,14 @@ class UnitMemory:
     def azimuths(self) -> Float32[np.ndarray, " units"]:
         """Azimuth of each unit, radians; a view that the next `add` may leave behind."""
         return self._azimuths[: self.units]
+
+    def blocks(self, places: int) -> Iterator[Units]:
+        """The memory, so many places at a time; views that the next `add` may leave behind."""
+        starts = self.starts
+        for first in range(0, len(self), places):
+            here = starts[first : first + places + 1]
+            span = slice(here[0], here[-1])
+            yield Units(self._signatures[span], self._azimuths[span], here - here[0])
 
     def __len__(self) -> int:
         return len(self._starts) - 1

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from math import exp, inf, pi, radians
 
+import cv2
 import numpy as np
 import pytest
 from hypothesis import given, settings
@@ -17,8 +18,9 @@ from vprbench.protocols import DescriptorLocalizer
 from vprbench.recruiting import recruit_by_vigilance
 from vprbench.types import Frame, Landmarks, Observation
 from vprbench_encoders.log_polar import LogPolar
-from vprbench_localizers.matching import PairEncoder
-from vprbench_localizers.max_pi import MaxPi
+from vprbench_localizers.azimuth import azimuths
+from vprbench_localizers.matching import PairEncoder, ThresholdEncoder
+from vprbench_localizers.max_pi import TOGETHER, MaxPi
 from vprbench_localizers.unit_memory import View
 
 Matrix = Float32[np.ndarray, "rows columns"]
@@ -111,6 +113,50 @@ def test_responses_follow_the_equations(
         [from_the_equations(q, p, threshold, radians(width), radians(width * widths)) for p in views] for q in views
     ]
     np.testing.assert_allclose(agent.compare(views, views), expected, atol=2e-5)
+
+
+def bit_by_bit(query: View, place: View, matches: Matrix, threshold: float, width: float, reach: float) -> np.float32:
+    """The same in the arithmetic of the product: float32, but for the agreement, with units summed in their order."""
+    total, scale = np.float32(0), np.float32(1) - np.float32(threshold)
+    for m, theta in enumerate(place.azimuths):
+        best = np.float32(0)
+        for p, phi in enumerate(query.azimuths):
+            turn = float(abs(phi - theta))
+            turn = abs(turn - 2 * float(np.float32(pi))) if turn > np.float32(pi) else turn
+            recognised = min((matches[p, m] - np.float32(threshold)) / scale, np.float32(1))
+            if turn <= reach and recognised > 0:
+                best = max(best, recognised * np.float32(exp(-0.5 * (turn / width) ** 2)))
+        total += best
+    return total / np.float32(len(place.azimuths))
+
+
+@pytest.mark.parametrize("threshold", [0.7, 0.8, 0.9])
+def test_responses_equal_the_plain_formula_bitwise(threshold: float) -> None:
+    """Of maps that match from 0.5 to 1: every threshold has pairs on either side. More places than a block holds."""
+    rng = np.random.default_rng(1)
+    base = cv2.GaussianBlur(rng.random((54, 54 * 40), np.float32), (0, 0), 3)
+    base = (base - base.min()) / (base.max() - base.min())
+    maps = np.stack([base[:, 9 * i : 9 * i + 54].ravel() for i in range(200)])
+    table = [
+        Landmarks(maps[rng.integers(0, 200, 6)], (rng.random((6, 2)) * [642, 188]).astype(np.float32))
+        for _ in range(2 * TOGETHER + 3)
+    ]
+    encoder = LogPolar()
+    agent = MaxPi(encoder, recognition_threshold=threshold, azimuth_width_deg=20.0)
+    views = [
+        View(signatures, azimuths(points[:, 0], heading, np.array([372.0, 314.0])))
+        for (signatures, points), heading in zip(table, rng.uniform(-pi, pi, len(table)), strict=True)
+    ]
+    expected = [
+        [
+            bit_by_bit(q, p, encoder.match(q.signatures, p.signatures), threshold, radians(20.0), 3.0 * radians(20.0))
+            for p in views
+        ]
+        for q in views[:4]
+    ]
+    found = agent.compare(views[:4], views)
+    np.testing.assert_array_equal(found, np.array(expected, np.float32))
+    assert 0 < np.count_nonzero(found) < found.size
 
 
 @ENCODERS
@@ -275,6 +321,6 @@ def test_configurations_build_it_and_it_keeps_its_protocols() -> None:
     agent = build({"localizer": "max-pi", "encoder": {"name": "log-polar-12", "points": 15}, "vigilance": 0.3})
     assert isinstance(agent, MaxPi)
     assert isinstance(agent, DescriptorLocalizer)
-    assert isinstance(agent.encoder, PairEncoder)
+    assert isinstance(agent.encoder, ThresholdEncoder)
     assert not isinstance(TableEncoder([]), PairEncoder)
     assert agent.vigilance == 0.3
