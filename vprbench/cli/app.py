@@ -7,7 +7,21 @@ from typing import Annotated
 
 import typer
 
-__all__ = ["app", "check", "claims", "compare", "fit", "frequency", "list_", "report", "run", "score", "sweep", "table"]
+__all__ = [
+    "app",
+    "check",
+    "claims",
+    "compare",
+    "fit",
+    "frequency",
+    "list_",
+    "report",
+    "reproduce",
+    "run",
+    "score",
+    "sweep",
+    "table",
+]
 
 app = typer.Typer(
     name="vprbench",
@@ -194,6 +208,29 @@ def report(
     from vprbench.cli.reporting import report_command
 
     report_command(results, out, data, routes)
+
+
+@app.command(epilog="Example: vprbench reproduce reconstruction auc-hsd --data ~/kitti")
+def reproduce(
+    studies: Annotated[list[str] | None, typer.Argument(help="Studies (see --list). Default: all.")] = None,
+    out: Annotated[Path, typer.Option(help="Folder of everything that comes of it.")] = Path("runs/paper"),
+    data: Data = None,
+    jobs: Annotated[int | None, typer.Option(min=1, help="Worker processes of sweeps. Default: one a core.")] = None,
+    cache: Cache = None,
+    file: Annotated[Path | None, typer.Option(help="TOML file with studies of your own, in place of ours.")] = None,
+    list: Annotated[bool, typer.Option("--list", help="Only list the studies.")] = False,
+    dry_run: Annotated[bool, typer.Option("--dry-run", help="Only say what would be run, and what could not.")] = False,
+) -> None:
+    """Reproduce the paper's figures and tables on the data present, and judge its claims by what comes out.
+
+    Measures what is not there yet; then writes OUT/claims.csv, OUT/figures/ and a report of each sweep, and says in a
+    line for each study what could not be run and why. Exit code 1 if something failed.
+    """
+    from vprbench.cli.reproducing import reproduce_command
+    from vprbench.cli.studying import Reproduction
+
+    request = Reproduction(tuple(studies or ()), out, data, jobs, cache, file, list, dry_run)
+    raise typer.Exit(reproduce_command(request))
 
 
 @app.command(name="list", epilog="Example: vprbench list routes --data ~/kitti")
