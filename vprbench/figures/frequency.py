@@ -11,7 +11,7 @@ import pandas as pd
 
 from vprbench.errors import ConfigError
 from vprbench.figures.panels import plain
-from vprbench.figures.style import INK, agent_colours, caption, house_style, new_figure
+from vprbench.figures.style import agent_colours, caption, house_style, new_figure
 from vprbench.frequency.crossing import cheaper_from
 from vprbench.frequency.question import PaperPoint
 
@@ -96,7 +96,7 @@ def _quote(axes: Axes, point: PaperPoint, colour: str) -> None:
     """A frequency of the paper's."""
     axes.plot(point.places, point.hz, "D", color=colour, markersize=5, markerfacecolor="white", zorder=3)
     label = f"{plain(point.agent)}, paper"
-    axes.annotate(label, (point.places, point.hz), (6, -3), textcoords="offset points", color=INK, fontsize=7)
+    axes.annotate(label, (point.places, point.hz), (-6, -2.5), textcoords="offset points", ha="right", fontsize=7)
 
 
 def _explained(table: pd.DataFrame, reference: str, quoted: bool) -> str:
