@@ -126,7 +126,9 @@ def frequency(
     route: Annotated[str, typer.Option(help="The route whose frames are learned and asked for.")],
     agents: Annotated[
         list[str] | None,
-        typer.Argument(help="lpmp, hsd-12 to hsd-30, hsd-15-30, cohog (default: all); or insides of TOML tables."),
+        typer.Argument(
+            help="lpmp, hsd-12 to hsd-30, hsd-15-30, hsd-plus, cohog (default: all); or insides of TOML tables."
+        ),
     ] = None,
     places: Annotated[
         str | None, typer.Option(help="Numbers of places, with commas between. Default: the paper's, 1 to 1000.")
