@@ -36,7 +36,8 @@ class Encoder(Protocol):
     """The what pathway: turns a frame into landmarks, and compares their signatures.
 
     An encoder may also offer `match_pairs(queries, memory, query_index, memory_index)`, the same matches for listed
-    pairs only; a localizer that knows which pairs matter is faster for it.
+    pairs only; a localizer that knows which pairs matter is faster for it. And `match_pairs_above(..., floor)`: exact
+    where a match is above the floor, elsewhere any value that is not; faster still where weak matches do not count.
     """
 
     def fit(self, frames: Sequence[Frame]) -> None:
