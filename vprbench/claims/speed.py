@@ -10,11 +10,11 @@ from __future__ import annotations
 from collections.abc import Sequence
 from typing import Literal, NamedTuple
 
-import numpy as np
 import pandas as pd
 
 from vprbench.claims.reading import Evidence, Measurement, Reading, Untestable, canonical
 from vprbench.errors import DataError
+from vprbench.frequency.crossing import crossing
 
 __all__ = ["Crossing", "Frequency", "FrequencyRatio"]
 
@@ -81,7 +81,10 @@ class Crossing(Measurement):
         if both.empty:
             raise Untestable(f"{study}.csv has no number of places that {self.agent} and {self.reference} share")
         ends = {"query_ms": "query_ms", "query_ms_q1": "query_ms_q3", "query_ms_q3": "query_ms_q1"}
-        value, low, high = (_crossing(both["places"], both[f"{a}_x"] - both[f"{b}_y"]) for a, b in ends.items())
+        value, low, high = (
+            crossing(both["places"].to_numpy(float), (both[f"{a}_x"] - both[f"{b}_y"]).to_numpy(float))
+            for a, b in ends.items()
+        )
         span = f"{both['places'].min()} to {both['places'].max()} places"
         return Reading(value, low, high, f"{study}.csv, {span}")
 
@@ -117,15 +120,3 @@ def _at(curve: pd.DataFrame, asked: Frequency | FrequencyRatio) -> _Time:
     if rows.empty:
         raise Untestable(f"not measured with {asked.places} places")
     return _Time(*rows.iloc[0][["query_ms_q1", "query_ms", "query_ms_q3"]])
-
-
-def _crossing(places: pd.Series, excess: pd.Series) -> float:
-    """Where the excess, by places in order, falls to 0 for good; 0 if it is never above, infinity if it ends so."""
-    x, y = places.to_numpy(float), excess.to_numpy(float)
-    above = np.flatnonzero(y > 0)
-    if not above.size:
-        return 0.0
-    last = int(above[-1])
-    if last == len(y) - 1:
-        return float("inf")
-    return float(x[last] + y[last] / (y[last] - y[last + 1]) * (x[last + 1] - x[last]))

@@ -6,8 +6,9 @@ from math import inf
 
 import numpy as np
 import pandas as pd
+from jaxtyping import Float64
 
-__all__ = ["cheaper_from"]
+__all__ = ["cheaper_from", "crossing"]
 
 
 def cheaper_from(table: pd.DataFrame, agent: str, reference: str) -> float:
@@ -22,11 +23,15 @@ def cheaper_from(table: pd.DataFrame, agent: str, reference: str) -> float:
         reference: another.
     """
     times = table.pivot(index="places", columns="agent", values="query_ms")[[agent, reference]].dropna()
-    excess = (times[agent] - times[reference]).to_numpy(float)
+    return crossing(times.index.to_numpy(float), (times[agent] - times[reference]).to_numpy(float))
+
+
+def crossing(places: Float64[np.ndarray, " sizes"], excess: Float64[np.ndarray, " sizes"]) -> float:
+    """Where an excess of time, by places in order, falls to 0 for good; 0 if never above, infinity if it ends so."""
     dearer = np.flatnonzero(excess > 0)
-    if not len(times) or excess[-1] > 0:
+    if not len(places) or excess[-1] > 0:
         return inf
     if not dearer.size:
         return 0.0
     last = dearer[-1]
-    return float(np.interp(0.0, -excess[last : last + 2], times.index.to_numpy(float)[last : last + 2]))
+    return float(np.interp(0.0, -excess[last : last + 2], places[last : last + 2]))
