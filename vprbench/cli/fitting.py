@@ -51,10 +51,7 @@ class _Task:
     config: Config
     seed: int
     first: bool
-
-    @property
-    def name(self) -> str:
-        return encoder_name(self.config, self.seed)
+    name: str
 
 
 def fit_command(request: Fitting) -> int:
@@ -89,7 +86,7 @@ def _tasks(request: Fitting) -> Iterator[_Task]:
         config = plugin_config(text, "encoder")
         validate(config, "encoder")
         for seed in seeds if is_seeded(config, "encoder") else seeds[:1]:
-            yield _Task(config, seed, seed == seeds[0])
+            yield _Task(config, seed, seed == seeds[0], encoder_name(config, seed))
 
 
 def _table(folder: Path) -> FitTable:
