@@ -61,10 +61,7 @@ def score_bars(
     Raises:
         ConfigError: there are no rows, or no such column.
     """
-    for column in ("agent", metric, *([by] if by else [])):
-        if rows.empty or column not in rows:
-            fault = "no finished cell" if rows.empty else f"no column {column!r}; {nearest(column, map(str, rows))}"
-            raise ConfigError(f"bars of scores: {fault}")
+    _require(rows, ["agent", metric, *([by] if by else [])])
     agents = distinct(rows["agent"])
     colours = colours or agent_colours(agents)
     with house_style():
@@ -82,11 +79,18 @@ def score_bars(
             axes.set_xlabel(_AXES.get(by, plain(by)) if axis is None else axis)
             show_legend(figure, colours, agents)
         quoted = by is None and not set(paper or {}).isdisjoint(agents)
-        caption(
-            figure,
-            _explained(rows, metric, by) + (" Diamonds: as the paper states, on its own route." if quoted else ""),
-        )
+        diamonds = " Diamonds: as the paper states, on its own route." if quoted else ""
+        caption(figure, _explained(rows, metric, by) + diamonds)
     return figure
+
+
+def _require(rows: pd.DataFrame, columns: Sequence[str]) -> None:
+    """Refuse what cannot be drawn."""
+    if rows.empty:
+        raise ConfigError("bars of scores: no finished cell")
+    for column in columns:
+        if column not in rows:
+            raise ConfigError(f"bars of scores: no column {column!r}; {nearest(column, map(str, rows))}")
 
 
 def _draw_alone(
