@@ -5,7 +5,8 @@ both on the same stretches and dictionary seeds (`vprbench.paired_scores`) and t
 common cancels. An agent's score is the mean over its cells (route and sampling distance).
 
 The interval is that of the percentiles, widened for the small numbers of blocks and seeds (`bootstrap.widening`).
-docs/statistics.md says how often such intervals held the truth.
+docs/statistics.md says how often such intervals held the truth. They are of one pair each: of 20 pairs of equal agents
+about one is found to differ. For n pairs at once, ask for a level of 1 - 0.05 / n (Bonferroni).
 """
 
 from __future__ import annotations
@@ -43,12 +44,9 @@ def compare(
 ) -> pd.DataFrame:
     """Differences between agents, over the cells that both answered, one row a pair, the largest first.
 
-    Without a reference, the agent of each pair is the one with the higher score.
-
     The columns: metric, agent, reference, difference (of the first less the second), low and high (its interval),
     cells (route and distance) and queries (over all routes) that it rests on, seeds and reference_seeds, and the
-    verdict, one of `VERDICTS`. Intervals are of one pair each: of 20 pairs of equal agents about one is found to
-    differ. For n pairs at once, ask for a level of 1 - 0.05 / n (Bonferroni).
+    verdict, one of `VERDICTS`. Without a reference, the agent of each pair is the one with the higher score.
 
     Args:
         answers: a result table with its traces, or traces by their cells.
@@ -73,11 +71,8 @@ def compare(
     wanted = {agent for pair in pairs for agent in pair}
     asked = {cell: trace for cell, trace in traces.items() if cell.agent in wanted}
     scored, drives = score_cells(asked, metric, block_m, resamples, seed)
-    rows = [_row(pair, scored, drives, level) for pair in pairs]
-    if reference is None:
-        pairs = [pair[::-1] if row["difference"] < 0 else pair for pair, row in zip(pairs, rows, strict=True)]
-        rows = [_row(pair, scored, drives, level) for pair in pairs]
-    table = pd.DataFrame([{"metric": metric, **row} for row in rows])
+    described = _row if reference is not None else _better_first
+    table = pd.DataFrame([{"metric": metric, **described(pair, scored, drives, level)} for pair in pairs])
     return table.sort_values("difference", ascending=False, kind="stable", ignore_index=True)
 
 
@@ -101,6 +96,14 @@ def _pairs(present: list[str], reference: str | None, agents: Sequence[str] | No
     if not pairs:
         raise ConfigError("compare: there is only one agent; it takes two to differ")
     return pairs
+
+
+def _better_first(
+    pair: tuple[str, str], scored: Mapping[str, Mapping[Place, Scored]], drives: Mapping[str, Drive], level: float
+) -> dict[str, Any]:
+    """The row of one pair, in the order in which its difference is not negative."""
+    row = _row(pair, scored, drives, level)
+    return _row(pair[::-1], scored, drives, level) if row["difference"] < 0 else row
 
 
 def _row(
