@@ -23,6 +23,7 @@ __all__ = [
     "Recruiting",
     "Stepwise",
     "Storable",
+    "Storing",
 ]
 
 # Which quantity says when a localizer recruits a new place: a vigilance (0..1) or a step (metres).
@@ -38,6 +39,9 @@ class Encoder(Protocol):
     An encoder may also offer `match_pairs(queries, memory, query_index, memory_index)`, the same matches for listed
     pairs only; a localizer that knows which pairs matter is faster for it. And `match_pairs_above(..., floor)`: exact
     where a match is above the floor, elsewhere any value that is not; faster still where weak matches do not count.
+    And an attribute `matches_by_overlap`, true if `match` is 2 sum of shares / (L1(a) + L1(b)), in float32 from the
+    first value to the last, where two values share the smaller if both have one sign, and 1 of two rows of zeros: then
+    a localizer matches by itself, and looks only at signatures that have something in common.
     """
 
     def fit(self, frames: Sequence[Frame]) -> None:
@@ -142,4 +146,13 @@ class DescriptorLocalizer(Localizer, Protocol[Description]):
         self, queries: Sequence[Description], places: Sequence[Description]
     ) -> Float32[np.ndarray, "queries places"]:
         """Response of a place stored as each of `places` to each of `queries`."""
+        ...
+
+
+@runtime_checkable
+class Storing(DescriptorLocalizer[Description], Protocol[Description]):
+    """One that can be given places outright, so that a large memory is filled without comparing each with all."""
+
+    def store(self, description: Description) -> int:
+        """Make a place of a description, whether or not it is due; its index. `learn` stores what is due."""
         ...

@@ -185,6 +185,11 @@ class HSD:
         """The same as `match`, for chosen pairs only."""
         return match_pairs(queries, memory, query_index, memory_index, self.similarity)
 
+    @property
+    def matches_by_overlap(self) -> bool:
+        """Whether a localizer may match signatures itself: they are sparse, and only what two of them share counts."""
+        return self.similarity == "overlap"
+
     def figures(self) -> dict[str, Figure]:
         """Drawings, by file stem: the units of S1, what those of S2 look for, and how often each is used.
 

@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 
 from vprbench.geodesy import wrap
 
-__all__ = ["agreeing_pairs", "agreement", "azimuths"]
+__all__ = ["agreeing_pairs", "agreement", "azimuths", "turn"]
 
 Pairs = tuple[Int64[np.ndarray, " pairs"], Int64[np.ndarray, " pairs"]]
 
@@ -29,7 +29,7 @@ def azimuths(
 
 
 @njit(cache=True)
-def _turn(one: np.float32, other: np.float32) -> float:
+def turn(one: np.float32, other: np.float32) -> float:
     """The angle between two azimuths in -pi..pi, the short way round."""
     turn = abs(one - other)
     # The smaller of both ways round, since a branch that is hard to predict would cost more than all else here.
@@ -39,7 +39,7 @@ def _turn(one: np.float32, other: np.float32) -> float:
 @njit(cache=True)
 def agreement(one: np.float32, other: np.float32, width: float) -> np.float32:
     """How well two azimuths in -pi..pi agree: exp(-(theta_p - theta_m)^2 / 2 width^2); an infinite width lets all."""
-    return np.float32(np.exp(-0.5 * (_turn(one, other) / width) ** 2))
+    return np.float32(np.exp(-0.5 * (turn(one, other) / width) ** 2))
 
 
 @njit(cache=True)
@@ -53,7 +53,7 @@ def _agreeing_pairs(
     for m in range(len(units)):
         for p in range(len(queries)):
             query_index[count], unit_index[count] = p, m
-            count += _turn(queries[p], units[m]) <= reach
+            count += turn(queries[p], units[m]) <= reach
     return query_index[:count], unit_index[:count]
 
 

@@ -11,7 +11,7 @@ from jaxtyping import Float32, Int64
 from vprbench.protocols import Encoder
 from vprbench_localizers.unit_memory import Units
 
-__all__ = ["PairEncoder", "PairMatcher", "ThresholdEncoder", "pair_matcher"]
+__all__ = ["OverlapEncoder", "PairEncoder", "PairMatcher", "ThresholdEncoder", "matches_by_overlap", "pair_matcher"]
 
 
 @runtime_checkable
@@ -43,6 +43,23 @@ class ThresholdEncoder(PairEncoder, Protocol):
     ) -> Float32[np.ndarray, " pairs"]:
         """What `match_pairs` gives, wherever that is above `floor`; elsewhere any value that is not above it."""
         ...
+
+
+@runtime_checkable
+class OverlapEncoder(Encoder, Protocol):
+    """An encoder that says how it matches, so that a memory of codes of few values can do it itself: optional.
+
+    Attributes:
+        matches_by_overlap: whether `match` is 2 sum of shares / (L1(a) + L1(b)), each sum in float32 from the first
+            value to the last; two values share the smaller, if both have one sign; 1 of two rows of zeros.
+    """
+
+    matches_by_overlap: bool
+
+
+def matches_by_overlap(encoder: Encoder) -> bool:
+    """Whether an encoder says that it matches by the overlap of codes."""
+    return bool(getattr(encoder, "matches_by_overlap", False))
 
 
 class PairMatcher(Protocol):

@@ -12,53 +12,21 @@ from typing import ClassVar
 
 import numpy as np
 from jaxtyping import Float32
-from numba import njit
-from numpy.typing import NDArray
 
 from vprbench.errors import ConfigError
 from vprbench.protocols import Encoder, Recruiting
 from vprbench.types import Observation, Responses
-from vprbench_localizers.azimuth import agreeing_pairs, agreement, azimuths
+from vprbench_localizers.azimuth import azimuths
 from vprbench_localizers.calibration import Calibration
-from vprbench_localizers.matching import pair_matcher
-from vprbench_localizers.unit_memory import UnitMemory, View
+from vprbench_localizers.matching import matches_by_overlap
+from vprbench_localizers.overlap_memory import OverlapMemory
+from vprbench_localizers.pair_memory import PairMemory
+from vprbench_localizers.unit_activity import Rule, View
 
 __all__ = ["MaxPi"]
 
 # Places compared at a time: bounds the memory that `compare` copies; the responses do not depend on it.
 BLOCK = 64
-
-# Places whose pairs are listed at a time: few enough that the lists stay in the cache.
-TOGETHER = 16
-
-
-@njit(cache=True)
-def _place_responses(
-    pairs: tuple[NDArray[np.int64], NDArray[np.int64]],
-    matches: NDArray[np.float32],
-    queries: NDArray[np.float32],
-    units: NDArray[np.float32],
-    starts: NDArray[np.int64],
-    width: float,
-    threshold: float,
-) -> NDArray[np.float32]:
-    """Mean over each place's units of max over pairs of min(1, max(0, s - RT) / (1 - RT)) * agreement of azimuths."""
-    activity = np.zeros(len(units), np.float32)
-    scale = np.float32(1) - np.float32(threshold)
-    for pair in range(len(matches)):
-        recognised = (matches[pair] - np.float32(threshold)) / scale
-        if recognised > 0:
-            p, m = pairs[0][pair], pairs[1][pair]
-            product = min(recognised, np.float32(1)) * agreement(queries[p], units[m], width)
-            activity[m] = max(activity[m], product)
-    responses = np.zeros(len(starts) - 1, np.float32)
-    for place in range(len(responses)):
-        first, end = starts[place], starts[place + 1]
-        for unit in range(first, end):
-            responses[place] += activity[unit]
-        if end > first:
-            responses[place] /= np.float32(end - first)
-    return responses
 
 
 class MaxPi:
@@ -69,7 +37,7 @@ class MaxPi:
 
     Args:
         encoder: finds and compares the landmarks, fitted before; one that also has `match_pairs` (see `PairEncoder`)
-            is faster.
+            is faster, one that matches by the overlap of sparse codes (see `OverlapEncoder`) far faster.
         vigilance: until `clear` sets another, 0..1 (our choice).
         azimuth_width_deg: width of the Gaussian agreement of azimuths, degrees (our choice); None or inf: all
             azimuths agree, so the heading plays no part.
@@ -122,19 +90,23 @@ class MaxPi:
         """Forget every place, and recruit from now on at this vigilance (0..1)."""
         _require(0 <= sampling <= 1, "vigilance must be 0..1", sampling)
         self.vigilance = sampling
-        self._memory = UnitMemory()
+        self._memory = self._empty_memory()
 
     def learn(self, observation: Observation) -> int | None:
         """Make this observation a place if no place responds to it as strongly as the vigilance."""
         view = self.describe(observation)
-        responses = self._respond(view, self._memory)
+        responses = self._memory.respond(view, self._rule)
         if len(responses) and np.fmax.reduce(responses) >= np.float32(self.vigilance):
             return None
+        return self.store(view)
+
+    def store(self, view: View) -> int:
+        """Make a place of this description, whatever responds to it; its index."""
         return self._memory.add(view)
 
     def respond(self, observation: Observation) -> Responses:
         """Response 0..1 of every learned place."""
-        return self._respond(self.describe(observation), self._memory)
+        return self._memory.respond(self.describe(observation), self._rule)
 
     def describe(self, observation: Observation) -> View:
         """The signatures and azimuths of one observation's landmarks."""
@@ -146,25 +118,21 @@ class MaxPi:
         """Response of a place stored as each of `places` to each of `queries`: bitwise what `respond` gives."""
         responses = np.zeros((len(queries), len(places)), np.float32)
         for first in range(0, len(places), BLOCK):
-            memory = UnitMemory.of(places[first : first + BLOCK])
+            memory = self._empty_memory()
+            for place in places[first : first + BLOCK]:
+                memory.add(place)
             for query, row in zip(queries, responses, strict=True):
-                row[first : first + BLOCK] = self._respond(query, memory)
+                row[first : first + BLOCK] = memory.respond(query, self._rule)
         return responses
 
-    def _respond(self, query: View, memory: UnitMemory) -> Responses:
+    @property
+    def _rule(self) -> Rule:
         if self.recognition_threshold is None:
             raise ConfigError("max-pi: no recognition threshold: call fit(drives), or give recognition_threshold")
-        if not (memory.units and len(query.azimuths)):
-            return np.zeros(len(memory), np.float32)
-        matcher = pair_matcher(self.encoder, self.recognition_threshold)
-        responses = np.empty(len(memory), np.float32)
-        for first, units in zip(range(0, len(memory), TOGETHER), memory.blocks(TOGETHER), strict=True):
-            pairs = agreeing_pairs(query.azimuths, units.azimuths, self._reach)
-            matches = matcher(query.signatures, units, *pairs)
-            responses[first : first + TOGETHER] = _place_responses(
-                pairs, matches, query.azimuths, units.azimuths, units.starts, self._width, self.recognition_threshold
-            )
-        return responses
+        return Rule(self.recognition_threshold, self._width, self._reach)
+
+    def _empty_memory(self) -> OverlapMemory | PairMemory:
+        return OverlapMemory() if matches_by_overlap(self.encoder) else PairMemory(self.encoder)
 
 
 def _require(valid: bool, rule: str, value: object) -> None:

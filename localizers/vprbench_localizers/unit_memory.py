@@ -2,27 +2,17 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator
-from typing import NamedTuple, Self
+from collections.abc import Iterator
+from typing import NamedTuple
 
 import numpy as np
 from jaxtyping import Float32, Int64
 
 from vprbench.errors import PluginError
+from vprbench_localizers.growing import with_room
+from vprbench_localizers.unit_activity import View
 
-__all__ = ["UnitMemory", "Units", "View"]
-
-
-class View(NamedTuple):
-    """What a place stores, and a query shows: its landmarks' signatures and azimuths.
-
-    Shapes and units:
-        signatures: float32 (points, size).
-        azimuths: float32 (points,), radians in -pi..pi.
-    """
-
-    signatures: Float32[np.ndarray, "points size"]
-    azimuths: Float32[np.ndarray, " points"]
+__all__ = ["UnitMemory", "Units"]
 
 
 class Units(NamedTuple):
@@ -51,14 +41,6 @@ class UnitMemory:
         self._starts = [0]
         self._signatures = np.empty((0, 0), np.float32)
         self._azimuths = np.empty(0, np.float32)
-
-    @classmethod
-    def of(cls, views: Iterable[View]) -> Self:
-        """A memory of these places."""
-        memory = cls()
-        for view in views:
-            memory.add(view)
-        return memory
 
     @property
     def starts(self) -> Int64[np.ndarray, " places_and_end"]:
@@ -102,15 +84,12 @@ class UnitMemory:
         return len(self) - 1
 
     def _reserve(self, units: int, size: int) -> None:
-        signatures, azimuths = self.signatures, self.azimuths
-        if self.units and size != signatures.shape[1]:
+        if not self.units:
+            self._signatures = np.empty((0, size), np.float32)
+        elif size != self._signatures.shape[1]:
             raise PluginError(
-                f"the encoder gives signatures of {size} values, the places stored have {signatures.shape[1]}:"
+                f"the encoder gives signatures of {size} values, the places stored have {self._signatures.shape[1]}:"
                 " clear them after fitting an encoder again"
             )
-        if units > len(self._azimuths):
-            # Doubling makes all the copies together cost less than two writes a unit.
-            self._signatures = np.empty((2 * units, size), np.float32)
-            self._azimuths = np.empty(2 * units, np.float32)
-            if self.units:
-                self._signatures[: self.units], self._azimuths[: self.units] = signatures, azimuths
+        self._signatures = with_room(self._signatures, units, self.units)
+        self._azimuths = with_room(self._azimuths, units, self.units)

@@ -20,8 +20,9 @@ from vprbench.types import Frame, Landmarks, Observation
 from vprbench_encoders.log_polar import LogPolar
 from vprbench_localizers.azimuth import azimuths
 from vprbench_localizers.matching import PairEncoder, ThresholdEncoder
-from vprbench_localizers.max_pi import TOGETHER, MaxPi
-from vprbench_localizers.unit_memory import View
+from vprbench_localizers.max_pi import MaxPi
+from vprbench_localizers.pair_memory import TOGETHER
+from vprbench_localizers.unit_activity import View
 
 Matrix = Float32[np.ndarray, "rows columns"]
 

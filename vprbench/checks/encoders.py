@@ -9,6 +9,7 @@ import numpy as np
 from vprbench.checks.check import Check, Suite, expect
 from vprbench.checks.encoder_subject import EncoderSubject, LazyFrames, same_landmarks
 from vprbench.checks.learned import learned_suite
+from vprbench.checks.matching import matching_suite
 from vprbench.checks.samples import flat_frame, textured_frame, training_frames
 from vprbench.plugins import missing
 from vprbench.protocols import Encoder
@@ -27,6 +28,7 @@ def encoder_checks(factory: Callable[[], Encoder]) -> Iterator[Check]:
     """
     subject = EncoderSubject(factory)
     yield from _suite.checks(subject)
+    yield from matching_suite.checks(subject)
     yield from learned_suite.checks(subject)
 
 

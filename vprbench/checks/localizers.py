@@ -14,7 +14,7 @@ from vprbench.checks.check import Check, DoesNotApply, Suite, expect
 from vprbench.checks.localizer_subject import LocalizerSubject, encoder_of
 from vprbench.checks.samples import flat_frame, training_drives, training_frames
 from vprbench.plugins import missing
-from vprbench.protocols import DescriptorLocalizer, Localizer, Recruiting
+from vprbench.protocols import DescriptorLocalizer, Localizer, Recruiting, Storing
 from vprbench.types import Observation
 
 __all__ = ["localizer_checks"]
@@ -251,3 +251,17 @@ def _learn_agrees_with_compare(subject: LocalizerSubject) -> None:
         learned = [frame for frame, place in enumerate(places) if localizer.learn(place) is not None]
         asked = "learn recruits exactly where the best response that compare gives is below the vigilance"
         expect(learned == recruits, f"{asked}: at {vigilance:g} frames {recruits}, not {learned}")
+
+
+@_suite.add
+def _store_makes_places_outright(subject: LocalizerSubject) -> None:
+    if not isinstance(subject.fitted, Storing):
+        raise DoesNotApply("it has no store, which is optional")
+    _, places = subject.learned()
+    answers = _answers(subject.fitted, places)
+    sparse = 0.0 if subject.fitted.recruiting == "vigilance" else 1e3
+    subject.fitted.clear(sparse)
+    made = [subject.fitted.store(subject.fitted.describe(place)) for place in places]
+    expect(made == list(range(len(places))), f"store makes a place of all that it is given: 0, 1, ..., not {made!r}")
+    same = np.array_equal(_answers(subject.fitted, places), answers)
+    expect(same, "places that are stored respond as those that are learned")

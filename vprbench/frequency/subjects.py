@@ -16,10 +16,10 @@ from vprbench.frequency.filling import Filled, Filling, told
 from vprbench.frequency.rehearsal import Rehearsal
 from vprbench.observation import Drive
 from vprbench.plugins import one_line
-from vprbench.protocols import Localizer
+from vprbench.protocols import Localizer, Storing
 from vprbench.reporting import Report, silent
 from vprbench.route import Traverse
-from vprbench.types import Landmarks
+from vprbench.types import Landmarks, Observation
 
 __all__ = ["Agent", "Subject", "fitted", "subjects"]
 
@@ -108,10 +108,18 @@ def _recruited(agent: Agent, filling: Filling) -> Iterator[Filled]:
     while refused < len(filling):
         filled = filling[index]
         with _hurried(agent, filled, known):
-            made = agent.localizer.learn(filled.observation) is not None
+            made = _learned(agent.localizer, filled.observation)
         index, refused = index + 1, 0 if made else refused + 1
         if made:
             yield filled
+
+
+def _learned(localizer: Localizer, observation: Observation) -> bool:
+    """Make a place of an observation, without comparing it with others if that can be had; whether there is one."""
+    if isinstance(localizer, Storing):
+        localizer.store(localizer.describe(observation))
+        return True
+    return localizer.learn(observation) is not None
 
 
 def _hurried(agent: Agent, filled: Filled, known: dict[int, Landmarks]) -> AbstractContextManager[None]:

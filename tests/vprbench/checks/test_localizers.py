@@ -59,6 +59,15 @@ class GoodDescriptor(Good):
         return self.good.compare(queries, places)
 
 
+class GoodStore(GoodDescriptor):
+    """One that can also be given places outright."""
+
+    def store(self, description: object) -> int:
+        good: Any = self.good
+        good.places.append(description)
+        return len(good.places) - 1
+
+
 class GoodStep(Good):
     """The same for one that recruits by road."""
 
@@ -263,6 +272,18 @@ class LearnsAtAnotherVigilance(GoodDescriptor):
         super().clear(sampling**2)
 
 
+class StoresOnlyWhatIsNew(GoodStore):
+    def store(self, description: object) -> int:
+        good: Any = self.good
+        return super().store(description) if len(good.places) < 2 else 1
+
+
+class StoresTheFirstOnly(GoodStore):
+    def store(self, description: object) -> int:
+        good: Any = self.good
+        return super().store(good.places[0] if good.places else description)
+
+
 # The check that a wrong localizer is made for, and the further ones that catch it as well.
 WRONG: list[tuple[str, Callable[[], Localizer], set[str]]] = [
     ("says-what-recruits", RecruitsByMood, {"recruits-as-often-as-asked"}),
@@ -291,6 +312,8 @@ WRONG: list[tuple[str, Callable[[], Localizer], set[str]]] = [
     ("respond-agrees-with-compare", ComparesPairsDifferently, set()),
     ("respond-agrees-with-compare", ComparesRoughly, set()),
     ("learn-agrees-with-compare", LearnsAtAnotherVigilance, set()),
+    ("store-makes-places-outright", StoresOnlyWhatIsNew, set()),
+    ("store-makes-places-outright", StoresTheFirstOnly, set()),
 ]
 
 
@@ -307,7 +330,7 @@ def failing(factory: Callable[[], Localizer]) -> set[str]:
     return failed
 
 
-@pytest.mark.parametrize("good", [Good, GoodDescriptor, GoodStep])
+@pytest.mark.parametrize("good", [Good, GoodDescriptor, GoodStore, GoodStep])
 def test_a_good_localizer_passes(good: Callable[[], Localizer]) -> None:
     assert failing(good) == set()
 

@@ -1,0 +1,59 @@
+"""The activity of a unit, and the response of a place: what both kinds of memory compute alike."""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+import numpy as np
+from jaxtyping import Float32
+from numba import njit
+from numpy.typing import NDArray
+
+from vprbench_localizers.azimuth import agreement
+
+__all__ = ["Rule", "View", "mean_by_place", "product"]
+
+
+class View(NamedTuple):
+    """What a place stores, and a query shows: its landmarks' signatures and azimuths.
+
+    Shapes and units:
+        signatures: float32 (points, size).
+        azimuths: float32 (points,), radians in -pi..pi.
+    """
+
+    signatures: Float32[np.ndarray, "points size"]
+    azimuths: Float32[np.ndarray, " points"]
+
+
+class Rule(NamedTuple):
+    """What makes a unit active.
+
+    Attributes:
+        threshold: the match below which two landmarks have nothing in common.
+        width: of the Gaussian agreement of azimuths, radians.
+        reach: azimuths further apart do not agree, radians.
+    """
+
+    threshold: float
+    width: float
+    reach: float
+
+
+@njit(cache=True)
+def product(recognised: np.float32, query: np.float32, unit: np.float32, width: float) -> np.float32:
+    """What times where: the recognition of a pair, at most 1, times the agreement of its two azimuths."""
+    return min(recognised, np.float32(1)) * agreement(query, unit, width)
+
+
+@njit(cache=True)
+def mean_by_place(activity: NDArray[np.float32], starts: NDArray[np.int64]) -> NDArray[np.float32]:
+    """The mean activity of each place's units, 0 where it has none."""
+    responses = np.zeros(len(starts) - 1, np.float32)
+    for place in range(len(responses)):
+        first, end = starts[place], starts[place + 1]
+        for unit in range(first, end):
+            responses[place] += activity[unit]
+        if end > first:
+            responses[place] /= np.float32(end - first)
+    return responses

@@ -1,0 +1,139 @@
+"""Every check of the faster ways to match fails for a wrong one, and passes for a good one."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import numpy.typing as npt
+import pytest
+
+from vprbench.agents import build_encoder
+from vprbench.checks import DoesNotApply, encoder_checks
+from vprbench.protocols import Encoder
+
+THIRD_PARTY = Path(__file__).parents[2] / "third_party"
+
+Signatures = npt.NDArray[np.float32]
+Indices = npt.NDArray[np.int64]
+
+
+@pytest.fixture(autouse=True)
+def acme(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.syspath_prepend(str(THIRD_PARTY))
+
+
+class Good:
+    """An encoder of brightness, which compares pairs too."""
+
+    def __init__(self) -> None:
+        self.good = build_encoder("mean-patch")
+        self.fit, self.encode = self.good.fit, self.good.encode
+
+    def match(self, queries: Signatures, memory: Signatures) -> Signatures:
+        return self.good.match(queries, memory)
+
+    def match_pairs(self, queries: Signatures, memory: Signatures, p: Indices, m: Indices) -> Signatures:
+        return np.float32(1) - np.abs(queries[p] - memory[m]).mean(axis=1)
+
+    def match_pairs_above(
+        self, queries: Signatures, memory: Signatures, p: Indices, m: Indices, floor: float
+    ) -> Signatures:
+        return self.match_pairs(queries, memory, p, m)
+
+
+class SwapsTheIndices(Good):
+    def match_pairs(self, queries: Signatures, memory: Signatures, p: Indices, m: Indices) -> Signatures:
+        return super().match_pairs(queries, memory, m, p)
+
+
+class ScalesByTheBest(Good):
+    def match_pairs(self, queries: Signatures, memory: Signatures, p: Indices, m: Indices) -> Signatures:
+        matches = super().match_pairs(queries, memory, p, m)
+        return matches * np.float32(1 + 1e-7 * len(matches))
+
+
+class RoundsAboveTheFloor(Good):
+    def match_pairs_above(self, *arguments: Any) -> Signatures:  # noqa: ANN401
+        return np.nextafter(super().match_pairs_above(*arguments), np.float32(0))
+
+
+class SaysTooMuchBelowTheFloor(Good):
+    def match_pairs_above(self, *arguments: Any) -> Signatures:  # noqa: ANN401
+        matches = super().match_pairs_above(*arguments)
+        return np.where(matches > arguments[4], matches, np.float32(1))
+
+
+class Overlaps(Good):
+    """One value after another, as it is written down."""
+
+    matches_by_overlap = True
+
+    def match(self, queries: Signatures, memory: Signatures) -> Signatures:
+        matches = [[self.overlap(a, b) for b in memory] for a in queries]
+        return np.array(matches, np.float32).reshape(len(queries), len(memory))
+
+    def match_pairs(self, queries: Signatures, memory: Signatures, p: Indices, m: Indices) -> Signatures:
+        return self.match(queries, memory)[p, m]
+
+    def overlap(self, a: Signatures, b: Signatures) -> np.float32:
+        common = one = other = np.float32(0)
+        for x, y in zip(a, b, strict=True):
+            common += min(abs(x), abs(y)) if x * y > 0 else np.float32(0)
+            one, other = one + abs(x), other + abs(y)
+        return np.float32(2) * common / (one + other) if one + other > 0 else np.float32(1)
+
+
+class OverlapsRoughly(Overlaps):
+    def overlap(self, a: Signatures, b: Signatures) -> np.float32:
+        return np.float32(1) - np.abs(a - b).sum() / (np.abs(a) + np.abs(b)).sum() if (a - b).any() else np.float32(1)
+
+
+class KnowsNoSign(Overlaps):
+    def overlap(self, a: Signatures, b: Signatures) -> np.float32:
+        return super().overlap(abs(a), abs(b))
+
+
+class SharesNothingWhereThereIsNothing(Overlaps):
+    def overlap(self, a: Signatures, b: Signatures) -> np.float32:
+        return super().overlap(a, b) if a.any() else np.float32(0)
+
+
+def failing(factory: Callable[[], Encoder]) -> set[str]:
+    failed = set()
+    for check in encoder_checks(factory):
+        try:
+            check.run()
+        except DoesNotApply:
+            continue
+        except AssertionError:
+            failed.add(check.name)
+    return failed
+
+
+@pytest.mark.parametrize("good", [Good, Overlaps])
+def test_good_ones_pass(good: Callable[[], Encoder]) -> None:
+    assert failing(good) == set()
+
+
+@pytest.mark.parametrize(
+    ("wrong", "name"),
+    [
+        (SwapsTheIndices, "match-pairs-gives-what-match-gives"),
+        (ScalesByTheBest, "match-pairs-gives-what-match-gives"),
+        (RoundsAboveTheFloor, "match-pairs-above-is-exact-above-the-floor"),
+        (SaysTooMuchBelowTheFloor, "match-pairs-above-is-exact-above-the-floor"),
+        (OverlapsRoughly, "matches-by-overlap-if-it-says-so"),
+        (KnowsNoSign, "matches-by-overlap-if-it-says-so"),
+        (SharesNothingWhereThereIsNothing, "matches-by-overlap-if-it-says-so"),
+    ],
+)
+def test_a_wrong_one_fails_its_check_and_no_other(wrong: Callable[[], Encoder], name: str) -> None:
+    assert failing(wrong) == {name}
+
+
+@pytest.mark.parametrize("name", ["log-polar-6", "log-polar-27"])
+def test_ours_pass(name: str) -> None:
+    assert failing(lambda: build_encoder(name)) == set()

@@ -1,0 +1,84 @@
+"""What is asked of the faster ways to match that an encoder may offer: they give what `match` gives."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from vprbench.checks.check import DoesNotApply, Suite, expect
+from vprbench.checks.encoder_subject import EncoderSubject
+
+__all__ = ["matching_suite"]
+
+# A kernel of its own may add up in another order than the matrix product of `match`.
+ROUNDING = 1e-5
+
+matching_suite = Suite[EncoderSubject]()
+
+
+def _offered(subject: EncoderSubject, name: str) -> Callable[..., Any]:
+    """A method that only some encoders have."""
+    method: Callable[..., Any] | None = getattr(subject.encoder, name, None)
+    if method is None:
+        raise DoesNotApply(f"it has no {name}, which is optional")
+    return method
+
+
+def _pairs(subject: EncoderSubject) -> tuple[tuple[NDArray[Any], ...], NDArray[np.float32]]:
+    """Signatures and the indices of pairs, some of them listed twice, and how alike they are."""
+    one, other = subject.signatures
+    rng = np.random.default_rng(0)
+    p, m = rng.integers(0, len(one), 300), rng.integers(0, len(other), 300)
+    return (one, other, p, m), subject.encoder.match(one, other)[p, m]
+
+
+@matching_suite.add
+def _match_pairs_gives_what_match_gives(subject: EncoderSubject) -> None:
+    compare = _offered(subject, "match_pairs")
+    pairs, matches = _pairs(subject)
+    found = compare(*pairs)
+    asked = found.dtype == np.float32 and np.allclose(found, matches, atol=ROUNDING)
+    expect(asked, "match_pairs gives float32 match(queries, memory)[query_index, memory_index]")
+    one, other, p, m = pairs
+    alone = compare(one, other, p[:1], m[:1])
+    expect(np.array_equal(alone, found[:1]), "a pair has the same match, to the bit, whichever pairs stand beside it")
+
+
+@matching_suite.add
+def _match_pairs_above_is_exact_above_the_floor(subject: EncoderSubject) -> None:
+    compare, exact = _offered(subject, "match_pairs_above"), _offered(subject, "match_pairs")
+    pairs, _ = _pairs(subject)
+    matches = exact(*pairs)
+    for floor in np.percentile(matches, [0, 50, 90]):
+        found, above = compare(*pairs, float(floor)), matches > floor
+        asked = np.array_equal(found[above], matches[above]) and bool((found[~above] <= floor).all())
+        expect(asked, "match_pairs_above gives the bits of match_pairs above the floor, and nothing above it elsewhere")
+
+
+@matching_suite.add
+def _matches_by_overlap_if_it_says_so(subject: EncoderSubject) -> None:
+    if not getattr(subject.encoder, "matches_by_overlap", False):
+        raise DoesNotApply("it does not say that it matches by overlap, which is optional")
+    one, other = subject.signatures
+    zero = np.zeros((1, one.shape[1]), np.float32)
+    # Of signs that may differ, and of nothing.
+    for queries, memory in ((one, other), (-one, other), (zero, other), (zero, zero)):
+        asked = np.array_equal(subject.encoder.match(queries, memory), _overlap(queries, memory))
+        expect(asked, "match is 2 sum of shares / (L1(a) + L1(b)), to the bit, where matches_by_overlap says so")
+
+
+def _overlap(queries: NDArray[np.float32], memory: NDArray[np.float32]) -> NDArray[np.float32]:
+    """The overlap of every query with every stored signature, summed in order."""
+    a, b = queries[:, None], memory[None]
+    shares = np.maximum(np.minimum(a, b), 0) - np.minimum(np.maximum(a, b), 0)
+    asked, held, common = (_sum(np.abs(values)) for values in (queries, memory, shares))
+    total = asked[:, None] + held[None]
+    return np.divide(np.float32(2) * common, total, out=np.ones_like(total), where=total > 0)
+
+
+def _sum(values: NDArray[np.float32]) -> NDArray[np.float32]:
+    """The sum over the last axis, from the first value to the last; `sum` itself adds up in pairs."""
+    return np.cumsum(values, axis=-1, dtype=np.float32)[..., -1]
