@@ -10,7 +10,7 @@ from dataclasses import dataclass
 
 import cv2
 import numpy as np
-from jaxtyping import Float32
+from jaxtyping import Float32, Int64
 from numba import njit
 from numpy.typing import NDArray
 
@@ -20,21 +20,8 @@ from vprbench_encoders.deriche import gradient_magnitude
 
 __all__ = ["FocusDetector"]
 
-
-@njit(cache=True)
-def _local_maxima(saliency: NDArray[np.float32], margin: int, floor: np.float32) -> NDArray[np.int64]:
-    """Flat indices, in reading order, of pixels above `floor` that none of their eight neighbours exceeds."""
-    rows, columns = saliency.shape
-    found = []
-    for v in range(margin, rows - margin):
-        above, level, below = saliency[v - 1], saliency[v], saliency[v + 1]
-        for u in range(margin, columns - margin):
-            here = level[u]
-            if here > floor and here >= level[u - 1] and here >= level[u + 1]:
-                highest = max(above[u - 1], above[u], above[u + 1], below[u - 1], below[u], below[u + 1])
-                if here >= highest:
-                    found.append(v * columns + u)
-    return np.array(found, np.int64)
+# A pixel and its eight neighbours.
+_NEIGHBOURHOOD = np.ones((3, 3), np.uint8)
 
 
 @njit(cache=True)
@@ -102,8 +89,14 @@ class FocusDetector:
 
         A frame without any gradient has none.
         """
-        saliency = self.saliency(gradient)
-        maxima = _local_maxima(saliency, self.margin, np.float32(self.floor))
-        strongest = maxima[np.argsort(-saliency.ravel()[maxima], kind="stable")]
-        v, u = np.divmod(strongest, gradient.shape[1])
+        v, u = self._local_maxima(self.saliency(gradient))
         return _compete(np.stack([u, v], axis=1).astype(np.float32), np.float32(self.radius), self.points)
+
+    def _local_maxima(self, saliency: Float32[np.ndarray, "height width"]) -> Int64[np.ndarray, "2 maxima"]:
+        """Row v and column u of pixels above the floor that none of their eight neighbours exceeds, highest first."""
+        inside = tuple(slice(self.margin, side - self.margin) for side in saliency.shape)
+        level, highest = saliency[inside], cv2.dilate(saliency, _NEIGHBOURHOOD)[inside]
+        maxima = np.flatnonzero((level >= highest) & (level > np.float32(self.floor)))
+        where = np.stack(np.divmod(maxima, max(level.shape[1], 1)))
+        strongest = np.argsort(-level[*where], kind="stable")
+        return where[:, strongest] + self.margin

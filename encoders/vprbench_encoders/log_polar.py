@@ -43,20 +43,53 @@ def log_polar_grid(inner: float, outer: float) -> Float32[np.ndarray, "2 samples
 
 @njit(cache=True)
 def _sample(image: NDArray[np.float32], points: NDArray[np.float32], grid: NDArray[np.float32]) -> NDArray[np.float32]:
-    rows, columns = image.shape
-    right, bottom = np.float32(columns - 1), np.float32(rows - 1)
-    one, zero = np.float32(1), np.float32(0)
-    values = np.empty((len(points), grid.shape[1]), np.float32)
+    samples = grid.shape[1]
+    values = np.empty((len(points), samples), np.float32)
+    corner, along, down = np.empty(samples, np.int32), np.empty(samples, np.float32), np.empty(samples, np.float32)
     for point in range(len(points)):
-        for i in range(grid.shape[1]):
-            u = min(max(points[point, 0] + grid[0, i], zero), right)
-            v = min(max(points[point, 1] + grid[1, i], zero), bottom)
-            left, top = min(int(u), columns - 2), min(int(v), rows - 2)
-            a, b = u - np.float32(left), v - np.float32(top)
-            upper = (one - a) * image[top, left] + a * image[top, left + 1]
-            lower = (one - a) * image[top + 1, left] + a * image[top + 1, left + 1]
-            values[point, i] = (one - b) * upper + b * lower
+        _locate(image.shape, points[point], grid[0], grid[1], corner, along, down)
+        _interpolate(image.ravel(), image.shape[1], corner, along, down, values[point])
     return values
+
+
+# Where to read and what to make of it are two loops, since only the first can run in vector lanes.
+@njit(cache=True)
+def _locate(
+    shape: tuple[int, int],
+    point: NDArray[np.float32],
+    du: NDArray[np.float32],
+    dv: NDArray[np.float32],
+    corner: NDArray[np.int32],
+    along: NDArray[np.float32],
+    down: NDArray[np.float32],
+) -> None:
+    """Flat index of the pixel up left of each sample, and how far beyond it the sample lies, 0..1."""
+    width, right, bottom = np.int32(shape[1]), np.float32(shape[1] - 1), np.float32(shape[0] - 1)
+    last_left, last_top, zero = np.int32(shape[1] - 2), np.int32(shape[0] - 2), np.float32(0)
+    for i in range(len(du)):
+        u = min(max(point[0] + du[i], zero), right)
+        v = min(max(point[1] + dv[i], zero), bottom)
+        left, top = min(np.int32(u), last_left), min(np.int32(v), last_top)
+        along[i], down[i] = u - np.float32(left), v - np.float32(top)
+        corner[i] = top * width + left
+
+
+@njit(cache=True)
+def _interpolate(
+    pixels: NDArray[np.float32],
+    width: int,
+    corner: NDArray[np.int32],
+    along: NDArray[np.float32],
+    down: NDArray[np.float32],
+    values: NDArray[np.float32],
+) -> None:
+    one = np.float32(1)
+    right, below, opposite = pixels[1:], pixels[width:], pixels[width + 1 :]
+    for i in range(len(values)):
+        at = np.uint32(corner[i])
+        upper = (one - along[i]) * pixels[at] + along[i] * right[at]
+        lower = (one - along[i]) * below[at] + along[i] * opposite[at]
+        values[i] = (one - down[i]) * upper + down[i] * lower
 
 
 def sample_log_polar(
