@@ -7,13 +7,16 @@ from typing import Annotated
 from pydantic import Field
 
 from vprbench.entries.base import Entry, Split
-from vprbench.entries.folder import FolderEntry, OwnCamera
+from vprbench.entries.folder import FolderEntry
+from vprbench.entries.images import OwnCamera
+from vprbench.entries.index import IndexEntry
 from vprbench.entries.kitti import KittiOdometryEntry, KittiRawEntry
 from vprbench.entries.street import StreetEntry
 
 __all__ = [
     "Entry",
     "FolderEntry",
+    "IndexEntry",
     "KittiOdometryEntry",
     "KittiRawEntry",
     "OwnCamera",
@@ -22,4 +25,6 @@ __all__ = [
     "StreetEntry",
 ]
 
-RouteEntry = Annotated[KittiOdometryEntry | KittiRawEntry | FolderEntry | StreetEntry, Field(discriminator="reader")]
+RouteEntry = Annotated[
+    KittiOdometryEntry | KittiRawEntry | FolderEntry | IndexEntry | StreetEntry, Field(discriminator="reader")
+]

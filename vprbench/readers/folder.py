@@ -21,8 +21,9 @@ from jaxtyping import Float64
 from vprbench.availability import Need, need_of
 from vprbench.errors import DataError
 from vprbench.geodesy import COURSE_WINDOW, check_geodetic, course, local_positions, wrap
+from vprbench.readers.crop import Crop
 from vprbench.readers.csv_table import CsvTable, read_csv
-from vprbench.readers.images import ImageFiles, content_hash, image_size
+from vprbench.readers.images import ImageFiles, content_hash, image_size, optics
 from vprbench.readers.number_files import check_increasing
 from vprbench.route import Camera, Traverse
 
@@ -40,9 +41,11 @@ class FolderDrive:
 
     Attributes:
         path: the CSV.
+        crop: the band of its images that becomes the frame; None for all of them.
     """
 
     path: Path
+    crop: Crop | None = None
 
     @cached_property
     def images(self) -> tuple[Path, ...]:
@@ -82,10 +85,10 @@ class FolderDrive:
         times, headings = self._times(positions), self._headings(positions)
         size = image_size(self.images[0])
         seen_by = camera(size[0])
-        parts = (positions, times, headings, np.array([seen_by.fx, seen_by.cx]))
+        parts = (positions, times, headings, *optics(seen_by, self.crop))
         return Traverse(
             name=str(self.path) if self._has_heading else f"{self.path} (headings from its positions)",
-            frames=ImageFiles(self.images, size),
+            frames=ImageFiles(self.images, size, self.crop),
             positions=positions,
             headings=headings,
             times=times,
@@ -93,6 +96,7 @@ class FolderDrive:
             indices=np.arange(len(positions)),
             checksum=content_hash(self.images, *parts),
             geodetic=self.geodetic,
+            heading_source="measured" if self._has_heading else "derived",
         )
 
     @cached_property
