@@ -12,6 +12,7 @@ from vprbench.entries.images import OwnCamera
 from vprbench.entries.index import IndexEntry
 from vprbench.entries.kitti import KittiOdometryEntry, KittiRawEntry
 from vprbench.entries.street import StreetEntry
+from vprbench.entries.vpr_bench import VprBenchEntry
 
 __all__ = [
     "Entry",
@@ -23,8 +24,10 @@ __all__ = [
     "RouteEntry",
     "Split",
     "StreetEntry",
+    "VprBenchEntry",
 ]
 
 RouteEntry = Annotated[
-    KittiOdometryEntry | KittiRawEntry | FolderEntry | IndexEntry | StreetEntry, Field(discriminator="reader")
+    KittiOdometryEntry | KittiRawEntry | FolderEntry | IndexEntry | VprBenchEntry | StreetEntry,
+    Field(discriminator="reader"),
 ]
