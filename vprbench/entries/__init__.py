@@ -12,6 +12,7 @@ from vprbench.entries.images import OwnCamera
 from vprbench.entries.index import IndexEntry
 from vprbench.entries.kitti import KittiOdometryEntry, KittiRawEntry
 from vprbench.entries.street import StreetEntry
+from vprbench.entries.utm import UtmEntry
 from vprbench.entries.vpr_bench import VprBenchEntry
 
 __all__ = [
@@ -24,10 +25,11 @@ __all__ = [
     "RouteEntry",
     "Split",
     "StreetEntry",
+    "UtmEntry",
     "VprBenchEntry",
 ]
 
 RouteEntry = Annotated[
-    KittiOdometryEntry | KittiRawEntry | FolderEntry | IndexEntry | VprBenchEntry | StreetEntry,
+    KittiOdometryEntry | KittiRawEntry | FolderEntry | IndexEntry | VprBenchEntry | UtmEntry | StreetEntry,
     Field(discriminator="reader"),
 ]
