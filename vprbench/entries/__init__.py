@@ -11,6 +11,7 @@ from vprbench.entries.folder import FolderEntry
 from vprbench.entries.images import OwnCamera
 from vprbench.entries.index import IndexEntry
 from vprbench.entries.kitti import KittiOdometryEntry, KittiRawEntry
+from vprbench.entries.robotcar import RobotCarEntry
 from vprbench.entries.street import StreetEntry
 from vprbench.entries.utm import UtmEntry
 from vprbench.entries.vpr_bench import VprBenchEntry
@@ -22,6 +23,7 @@ __all__ = [
     "KittiOdometryEntry",
     "KittiRawEntry",
     "OwnCamera",
+    "RobotCarEntry",
     "RouteEntry",
     "Split",
     "StreetEntry",
@@ -30,6 +32,13 @@ __all__ = [
 ]
 
 RouteEntry = Annotated[
-    KittiOdometryEntry | KittiRawEntry | FolderEntry | IndexEntry | VprBenchEntry | UtmEntry | StreetEntry,
+    KittiOdometryEntry
+    | KittiRawEntry
+    | FolderEntry
+    | IndexEntry
+    | VprBenchEntry
+    | UtmEntry
+    | RobotCarEntry
+    | StreetEntry,
     Field(discriminator="reader"),
 ]

@@ -12,6 +12,7 @@ from vprbench.entries.folder import FolderEntry
 from vprbench.entries.images import OwnCamera
 from vprbench.entries.index import IndexEntry
 from vprbench.entries.kitti import KittiOdometryEntry, KittiRawEntry
+from vprbench.entries.robotcar import RobotCarEntry
 from vprbench.entries.street import StreetEntry
 from vprbench.entries.utm import UtmEntry
 from vprbench.entries.vpr_bench import VprBenchEntry
@@ -26,6 +27,7 @@ _KEYS: dict[str, set[str]] = {
     "kitti-raw": set(KittiRawEntry.model_fields),
     "folder": set(FolderEntry.model_fields),
     "index": set(IndexEntry.model_fields),
+    "robotcar": set(RobotCarEntry.model_fields),
     "vpr-bench": set(VprBenchEntry.model_fields),
     "utm": set(UtmEntry.model_fields),
     "street": set(StreetEntry.model_fields) - {"parameters"} | {field.name for field in fields(StreetParameters)},

@@ -2,13 +2,16 @@
 
 from __future__ import annotations
 
+from pathlib import Path
 from typing import Literal
 
 import cv2
 import numpy as np
 from jaxtyping import UInt8
 
-__all__ = ["Bayer", "demosaiced"]
+from vprbench.errors import DataError
+
+__all__ = ["Bayer", "demosaiced", "is_colour"]
 
 # The colours of the first two rows' first two pixels, row by row.
 Bayer = Literal["bggr", "gbrg", "grbg", "rggb"]
@@ -24,3 +27,11 @@ _CODES: dict[Bayer, int] = {
 def demosaiced(raw: UInt8[np.ndarray, "height width"], pattern: Bayer) -> UInt8[np.ndarray, "height width"]:
     """The luma (0.299 R + 0.587 G + 0.114 B) of a raw image, its missing colours interpolated bilinearly by OpenCV."""
     return np.asarray(cv2.cvtColor(raw, _CODES[pattern]), np.uint8)
+
+
+def is_colour(path: Path) -> bool:
+    """Whether an image file holds colours rather than one value a pixel."""
+    image = cv2.imread(str(path), cv2.IMREAD_UNCHANGED)
+    if image is None:
+        raise DataError(f"{path}: the image cannot be decoded; fetch the file again")
+    return image.ndim > 2

@@ -20,7 +20,7 @@ from jaxtyping import Float64
 
 from vprbench.availability import Need, need_of
 from vprbench.errors import DataError
-from vprbench.geodesy import COURSE_WINDOW, check_geodetic, course, local_positions, wrap
+from vprbench.geodesy import check_geodetic, derived_headings, local_positions, wrap
 from vprbench.readers.crop import Crop
 from vprbench.readers.csv_table import CsvTable, read_csv
 from vprbench.readers.images import ImageFiles, content_hash, image_size, optics
@@ -143,9 +143,7 @@ class FolderDrive:
     def _headings(self, positions: Float64[np.ndarray, "n 2"]) -> Float64[np.ndarray, " n"]:
         """Radians in -pi..pi, clockwise from north."""
         if not self._has_heading:
-            if np.linalg.norm(np.diff(positions, axis=0), axis=1).sum() < COURSE_WINDOW:
-                raise DataError(f"{self.path}: too short a drive to see its direction; add a column heading_deg")
-            return course(positions)
+            return derived_headings(positions, str(self.path), "add a column heading_deg")
         degrees = self._table.numbers("heading_deg")
         bad = np.flatnonzero(np.abs(degrees) > 360.0)
         if bad.size:

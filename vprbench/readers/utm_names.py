@@ -19,7 +19,7 @@ from jaxtyping import Float64
 
 from vprbench.availability import Need
 from vprbench.errors import DataError
-from vprbench.geodesy import COURSE_WINDOW, course, wrap
+from vprbench.geodesy import derived_headings, wrap
 from vprbench.readers.crop import Crop
 from vprbench.readers.images import ImageFiles, content_hash, image_files, image_size, optics
 from vprbench.route import Camera, HeadingSource, Traverse
@@ -141,9 +141,7 @@ class UtmImages:
             return np.full(len(positions), np.nan)
         if source == "measured":
             return wrap(np.radians([tagged.number("heading") for tagged in self._tagged]))
-        if np.linalg.norm(np.diff(positions, axis=0), axis=1).sum() < COURSE_WINDOW:
-            raise DataError(f'{self.folder}: too short a drive to see its direction; set headings = "absent"')
-        return course(positions)
+        return derived_headings(positions, str(self.folder), 'set headings = "absent"')
 
 
 def _zone(said: dict[str, str]) -> str:
