@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -10,6 +10,9 @@ from vprbench.errors import DataError
 from vprbench.frame_ranges import format_ranges
 
 __all__ = ["Availability", "Need", "need_of"]
+
+# How many ranges of frames a message names.
+_RANGES = 12
 
 
 @dataclass(frozen=True)
@@ -42,10 +45,10 @@ class Need:
         if not self.frames:
             return f"{self.source}, a file that is not there"
         there = len(self.frames) - len(self.missing)
-        text = f"frames {format_ranges(self.frames)} of {self.source}: "
+        text = f"frames {_short(self.frames)} of {self.source}: "
         text += f"{there} of {len(self.frames)} are in {self.folder}"
         if self.missing:
-            text += f", missing {format_ranges(self.missing)}"
+            text += f", missing {_short(self.missing)}"
         if self.absent:
             text += f"; no file {', '.join(map(str, self.absent))}"
         return text
@@ -105,6 +108,12 @@ def need_of(
     missing = tuple(sorted(i for i, paths in frames.items() if any(p.name not in listings[p.parent] for p in paths)))
     absent = tuple(path for path in others if not path.is_file())
     return Need(source, folder, tuple(sorted(frames)), missing, absent, remedy)
+
+
+def _short(frames: Sequence[int]) -> str:
+    """The frames as ranges, the first so many of them where a thinned drive has hundreds."""
+    ranges = format_ranges(frames).split(", ")
+    return ", ".join(ranges[:_RANGES]) + (f", ... {frames[-1]}" if len(ranges) > _RANGES else "")
 
 
 def _names(folder: Path) -> frozenset[str]:

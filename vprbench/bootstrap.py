@@ -26,11 +26,11 @@ from vprbench.trace import Trace
 __all__ = [
     "BLOCK_M",
     "INTERVAL_METRICS",
-    "INTERVAL_RULE",
     "LEVEL",
     "RESAMPLES",
     "block_frames",
     "check_settings",
+    "interval_rule",
     "intervals",
     "resample",
     "resample_chunks",
@@ -49,11 +49,13 @@ INTERVAL_METRICS: Mapping[str, Callable[[Tally], Score]] = {
 
 BLOCK_M, RESAMPLES, LEVEL = 10.0, 2000, 0.95
 
-# Said in every row that carries an interval.
-INTERVAL_RULE = f"{LEVEL:.0%} percentiles of {RESAMPLES} circular block-bootstrap resamples, blocks of {BLOCK_M:g} m"
-
 # Resamples are drawn in chunks of at most this many weights: 8 MB of them at a time.
 CHUNK = 1_000_000
+
+
+def interval_rule(unit: str = "m") -> str:
+    """How intervals are found, said in every row that carries one; a block is as long on a route in frames."""
+    return f"{LEVEL:.0%} percentiles of {RESAMPLES} circular block-bootstrap resamples, blocks of {BLOCK_M:g} {unit}"
 
 
 def resample(
@@ -70,7 +72,7 @@ def resample(
 
 
 def block_frames(trace: Trace, block_m: float) -> int:
-    """Number of frames in a block of this many metres of road, by the mean spacing of the drive; at least 1."""
+    """Number of frames in a block of this length of road, by the mean spacing of the drive; at least 1."""
     steps = np.hypot(np.diff(trace.east), np.diff(trace.north))
     travelled = float(steps.sum())
     if travelled == 0.0:

@@ -14,7 +14,6 @@ from vprbench.entries import RouteEntry, Split
 from vprbench.entries.files import read_entries
 from vprbench.errors import ConfigError, DataError, nearest
 from vprbench.route import Route
-from vprbench.truth import revisit
 
 __all__ = ["Catalogue", "catalogue", "load_route"]
 
@@ -81,7 +80,11 @@ def _built_in() -> Catalogue:
 
 
 def _check_same_road(route: Route) -> None:
-    closest = revisit(route.learn.positions, route.test.positions).tolerance.min()
+    if route.truth is not None:
+        if not route.truth.answers.any():
+            raise DataError(f"{route.name}: no test frame has a right learn frame ({route.truth.rule}); check its data")
+        return
+    closest = route.visit.tolerance.min()
     if closest > _SAME_ROAD:
         raise DataError(
             f"{route.name}: {route.test.name} never comes nearer than {closest:.0f} m to {route.learn.name}; "

@@ -7,7 +7,7 @@ import pandas as pd
 from vprbench.bootstrap import INTERVAL_METRICS
 from vprbench.metrics import METRICS
 
-__all__ = ["COLUMNS", "typed"]
+__all__ = ["COLUMNS", "IMPLIED", "typed"]
 
 _INTERVALS = [f"{name}{rule}_{end}" for rule in ("", "_metric") for name in INTERVAL_METRICS for end in ("low", "high")]
 
@@ -22,6 +22,8 @@ COLUMNS: dict[str, str] = {
     "error": "str",
     "environment": "str",
     "split": "str",
+    "unit": "str",
+    "heading_source": "str",
     "sampling": "float64",
     "places": "Int64",
     "place_spacing_m": "float64",
@@ -42,6 +44,9 @@ COLUMNS: dict[str, str] = {
     "libraries": "str",
 }
 
+# Columns that a table may lack, and what it then says: before there were others, every distance was in metres.
+IMPLIED = {"unit": "m", "heading_source": ""}
+
 
 def typed(table: pd.DataFrame) -> pd.DataFrame:
     """The table with every column, in order and of its type; what a row lacks is empty.
@@ -49,7 +54,9 @@ def typed(table: pd.DataFrame) -> pd.DataFrame:
     Raises:
         ValueError: a column of numbers holds something else.
     """
-    whole = table.reindex(columns=list(COLUMNS))
+    whole = table.assign(**{name: said for name, said in IMPLIED.items() if name not in table}).reindex(
+        columns=list(COLUMNS)
+    )
     return pd.DataFrame({name: _column(whole[name], kind) for name, kind in COLUMNS.items()})
 
 

@@ -16,7 +16,6 @@ from vprbench.errors import ConfigError, PhaseError, nearest
 from vprbench.observation import observation_space, observe
 from vprbench.rendering import Scene, draw
 from vprbench.route import Route, Traverse
-from vprbench.truth import revisit
 from vprbench.types import NO_PLACE, Observation
 
 __all__ = ["Phase", "RouteEnv"]
@@ -44,8 +43,8 @@ class RouteEnv(gym.Env[Observation, dict[str, Any]]):
 
     Args:
         route: a route, or the name of one in the catalogue.
-        sampling_distance: metres between places that the metric rule assumes: a hypothesis is right by it within
-            half of this plus the query's own tolerance.
+        sampling_distance: metres (on a route in frames: frames) between places that the metric rule assumes: a
+            hypothesis is right by it within half of this plus the query's own tolerance.
         data: the data root (default: VPRBENCH_DATA, else the user's data folder).
         render_mode: "rgb_array" or None.
     """
@@ -72,7 +71,7 @@ class RouteEnv(gym.Env[Observation, dict[str, Any]]):
         )
         self.place_frames: Int64[np.ndarray, " frames"] = np.full(frames, NO_PLACE)
         self.winners: Int64[np.ndarray, " frames"] = np.full(frames, NO_PLACE)
-        self._visit = revisit(self.route.learn.positions, self.route.test.positions)
+        self._visit = self.route.visit
         self._phase: Phase = "learn"
         self._played: set[Phase] = set()
         self._index: int | None = None
@@ -175,7 +174,7 @@ class RouteEnv(gym.Env[Observation, dict[str, Any]]):
             "tolerance_m": tolerance,
             "correct": bool(made and place in self.winners[self._visit.answers[index]]),
             "correct_metric": bool(error <= self.sampling_distance / 2 + tolerance),
-            "true_place": int(self.winners[self._visit.nearest[index]]),
+            "true_place": int(self._visit.true_places(self.winners)[index]),
         }
 
     def _info(self, index: int) -> dict[str, Any]:

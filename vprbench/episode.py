@@ -16,12 +16,12 @@ import numpy as np
 from gymnasium.wrappers import FilterObservation
 from jaxtyping import Float32, Int64
 
-from vprbench.observation import Drive
+from vprbench.observation import Drive, senses
 from vprbench.protocols import Localizer
 from vprbench.recruiting import bisect_vigilance
 from vprbench.route import Route
 from vprbench.trace import Trace
-from vprbench.truth import metric_truth, place_field_truth, ranks, revisit
+from vprbench.truth import metric_truth, place_field_truth, ranks
 from vprbench.types import NO_PLACE, Hypothesis, Observation, Responses, hypothesis
 
 __all__ = ["Recording", "calibrate", "judge", "play", "winners"]
@@ -64,7 +64,7 @@ def play(env: gym.Env[Observation, dict[str, Any]], localizer: Localizer) -> Rec
         answered.append(localizer.respond(observation))
         return hypothesis(answered[-1])
 
-    blind = FilterObservation(env, ["frame", "heading", "camera"])
+    blind = FilterObservation(env, senses(env.observation_space))
     _drive(env, "learn", learn)
     recorded = _drive(blind, "record", respond)
     answered.clear()
@@ -87,7 +87,7 @@ def _drive(
 
 
 def calibrate(localizer: Localizer, route: Route, sampling_distance: float) -> float:
-    """The vigilance or step at which the localizer makes a place every `sampling_distance` metres on average.
+    """The vigilance or step at which a localizer makes a place every `sampling_distance` on average.
 
     A vigilance is found by bisection, learning the drive anew at each try. The localizer is left cleared to it.
     """
@@ -106,7 +106,7 @@ def calibrate(localizer: Localizer, route: Route, sampling_distance: float) -> f
 
 def judge(route: Route, recording: Recording, sampling_distance: float) -> Trace:
     """The trace of a recording: every answer of the test beside the truth, by both rules."""
-    visit = revisit(route.learn.positions, route.test.positions)
+    visit = route.visit
     responses, queries = recording.responses, np.arange(len(route.test))
     best = [hypothesis(row) for row in responses]
     place = np.array([answer.place for answer in best], np.int64)
@@ -116,7 +116,7 @@ def judge(route: Route, recording: Recording, sampling_distance: float) -> Trace
     gaps = visit.gaps[:, recording.place_frames]
     return Trace(
         frame=route.test.indices,
-        truth=recording.winners[visit.nearest],
+        truth=visit.true_places(recording.winners),
         hypothesis=place,
         confidence=np.array([answer.confidence for answer in best], np.float64),
         error_m=np.where(made, gaps[queries, place], np.nan),

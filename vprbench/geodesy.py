@@ -10,7 +10,7 @@ from jaxtyping import Float64
 
 from vprbench.errors import DataError
 
-__all__ = ["COURSE_WINDOW", "check_geodetic", "compass_heading", "course", "local_positions", "wrap"]
+__all__ = ["check_geodetic", "compass_heading", "course", "derived_headings", "local_positions", "wrap"]
 
 # Metres of road that a direction is taken over. Our choice: about one car length.
 COURSE_WINDOW = 5.0
@@ -66,3 +66,10 @@ def course(positions: Float64[np.ndarray, "n 2"], window: float = COURSE_WINDOW)
     ahead = np.searchsorted(distance, distance + window / 2, side="left")
     span = positions[ahead.clip(max=len(positions) - 1)] - positions[behind.clip(min=0)]
     return np.arctan2(span[:, 0], span[:, 1])
+
+
+def derived_headings(positions: Float64[np.ndarray, "n 2"], name: str, remedy: str) -> Float64[np.ndarray, " n"]:
+    """The course as headings; DataError, with the remedy, where a drive is too short to have one."""
+    if np.linalg.norm(np.diff(positions, axis=0), axis=1).sum() < COURSE_WINDOW:
+        raise DataError(f"{name}: too short a drive to see its direction; {remedy}")
+    return course(positions)

@@ -75,7 +75,7 @@ def record_fields(
         report: is told how far it has come.
     """
     # The record phase is the test phase of a route that is tested on what it learned.
-    recording = _played(replace(route, test=route.learn), localizer, sampling_distance, report)
+    recording = _played(replace(route, test=route.learn, truth=None), localizer, sampling_distance, report)
     return PlaceFields(
         route.name,
         agent,

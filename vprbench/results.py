@@ -21,7 +21,7 @@ import pandas as pd
 from filelock import FileLock, Timeout
 
 from vprbench.atomic import replacing
-from vprbench.columns import COLUMNS, typed
+from vprbench.columns import COLUMNS, IMPLIED, typed
 from vprbench.errors import ConfigError, DataError
 from vprbench.runner import Outcome
 from vprbench.sweep import Cell
@@ -162,7 +162,7 @@ def read_table(path: Path) -> pd.DataFrame:
     """
     try:
         table = pd.read_parquet(path) if path.suffix == ".parquet" else _read_csv(path)
-        missing = [name for name in COLUMNS if name not in table.columns]
+        missing = [name for name in COLUMNS if name not in table.columns and name not in IMPLIED]
         if missing:
             raise ValueError(f"it has no column {missing[0]!r} (an older version's table is measured anew elsewhere)")
         return typed(table)

@@ -9,7 +9,7 @@ from pathlib import Path
 from typing import Any
 
 from vprbench.agents import normalise
-from vprbench.bootstrap import INTERVAL_RULE, intervals
+from vprbench.bootstrap import interval_rule, intervals
 from vprbench.catalogue import load_route
 from vprbench.encoder_store import EncoderStore
 from vprbench.env import RouteEnv
@@ -28,12 +28,8 @@ from vprbench.trace import Trace
 
 __all__ = ["Outcome", "failure", "run"]
 
-# The rules behind every number, stated in every row.
-RULES = {
-    "tolerance_rule": "d_NN: distance from the query to its nearest learn frame",
-    "recall_denominator": "auc: correct top-1; auc_all: all queries",
-    "interval_rule": INTERVAL_RULE,
-}
+# Stated in every row; the rules that depend on the route are added where it is known.
+RECALL_DENOMINATOR = "auc: correct top-1; auc_all: all queries"
 
 # Plays the route at one sampling distance: the vigilance or step used, and the answers.
 Player = Callable[[float], tuple[float, Recording]]
@@ -119,6 +115,8 @@ def _answer(job: Job, cell: Cell, route: Route, player: Player) -> Outcome:
         "error": "",
         "environment": route.environment,
         "split": route.split,
+        "unit": route.unit,
+        "heading_source": route.learn.heading_source,
         "sampling": sampling,
         "places": places,
         "place_spacing_m": route.learn.length / places,
@@ -127,6 +125,8 @@ def _answer(job: Job, cell: Cell, route: Route, player: Player) -> Outcome:
         "tolerance_mean_m": float(trace.tolerance_m.mean()),
         **evaluate(trace),
         **intervals(trace),
+        "tolerance_rule": route.visit.rule,
+        "interval_rule": interval_rule(route.unit),
         "data_checksum": data_checksum(route),
     }
     return Outcome(cell, _identity(job, cell) | measured, trace)
@@ -148,6 +148,6 @@ def _identity(job: Job, cell: Cell) -> dict[str, Any]:
         "seed": cell.seed,
         "agent_config": json.dumps(config, sort_keys=True),
         "plugins": origins(config),
-        **RULES,
+        "recall_denominator": RECALL_DENOMINATOR,
         **versions(),
     }

@@ -32,17 +32,17 @@ Responses = Float32[np.ndarray, " places"]
 
 
 class Observation(TypedDict):
-    """What the vehicle senses at one frame; `gps` is there only while it learns.
+    """What the vehicle senses at one frame; `gps` only while it learns, `heading` only where the data set has any.
 
     Shapes and units:
         frame: uint8 (188, 642), grey.
         heading: float64 (1,), radians in -pi..pi, clockwise from the second (north) axis.
         camera: float64 (2,), focal length fx and principal column cx of `frame`, pixels.
-        gps: float64 (2,), local east and north, metres.
+        gps: float64 (2,), local east and north, metres; of a route in frames, 0 and the frame's number.
     """
 
     frame: Frame
-    heading: Float64[np.ndarray, "1"]
+    heading: NotRequired[Float64[np.ndarray, "1"]]
     camera: Float64[np.ndarray, "2"]
     gps: NotRequired[Float64[np.ndarray, "2"]]
 

@@ -7,7 +7,7 @@ where (agreement of azimuths), and a place cell's response is the mean activity 
 from __future__ import annotations
 
 from collections.abc import Sequence
-from math import inf, radians
+from math import inf, isfinite, radians
 from typing import ClassVar
 
 import numpy as np
@@ -49,7 +49,7 @@ class MaxPi:
         calibration_frames: at most so many training frames are compared (our choice).
 
     Raises:
-        ConfigError: an option is out of its range.
+        ConfigError: an option is out of its range; or a frame without a heading, unless all azimuths agree.
     """
 
     recruiting: ClassVar[Recruiting] = "vigilance"
@@ -111,8 +111,8 @@ class MaxPi:
     def describe(self, observation: Observation) -> View:
         """The signatures and azimuths of one observation's landmarks."""
         landmarks = self.encoder.encode(observation["frame"])
-        heading = float(observation["heading"][0])
-        return View(landmarks.signatures, azimuths(landmarks.points[:, 0], heading, observation["camera"]))
+        columns, camera = landmarks.points[:, 0], observation["camera"]
+        return View(landmarks.signatures, azimuths(columns, self._heading(observation), camera))
 
     def compare(self, queries: Sequence[View], places: Sequence[View]) -> Float32[np.ndarray, "queries places"]:
         """Response of a place stored as each of `places` to each of `queries`: bitwise what `respond` gives."""
@@ -124,6 +124,17 @@ class MaxPi:
             for query, row in zip(queries, responses, strict=True):
                 row[first : first + BLOCK] = memory.respond(query, self._rule)
         return responses
+
+    def _heading(self, observation: Observation) -> float:
+        """The camera's heading, radians; where none is sensed, any one will do if all azimuths agree."""
+        if "heading" in observation:
+            return float(observation["heading"][0])
+        if isfinite(self._width):
+            raise ConfigError(
+                "max-pi: the route has no headings, which azimuths need: set azimuth_width_deg = inf to match "
+                "landmarks without them"
+            )
+        return 0.0
 
     @property
     def _rule(self) -> Rule:

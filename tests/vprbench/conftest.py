@@ -24,9 +24,29 @@ def write_image(path: Path, value: int, size: tuple[int, int] = (124, 38), chann
     assert cv2.imwrite(str(path), np.random.default_rng(value).integers(0, 256, shape, np.uint8))
 
 
+def write_view(path: Path, step: int, size: tuple[int, int] = (160, 48), seed: int = 7) -> None:
+    """A window onto a long random wall, `step` times 12 pixels along it: near steps look alike, far ones do not."""
+    coarse = np.random.default_rng(seed).integers(0, 256, (12, 300), np.uint8)
+    wall = cv2.resize(coarse, (2400, size[1]), interpolation=cv2.INTER_CUBIC)
+    path.parent.mkdir(parents=True, exist_ok=True)
+    assert cv2.imwrite(str(path), wall[:, 12 * step : 12 * step + size[0]])
+
+
 def projection(fx: float, cx: float) -> str:
     """A projection matrix as KITTI writes it."""
     return f"{fx:e} 0 {cx:e} 0 0 {fx:e} 18 0 0 0 1 0"
+
+
+@pytest.fixture
+def draw_noise() -> Callable[..., None]:
+    """Write a noisy image: path, value, size, channels."""
+    return write_image
+
+
+@pytest.fixture
+def draw_view() -> Callable[..., None]:
+    """Write a view of one long wall: path, step along it, size, seed of the wall."""
+    return write_view
 
 
 @pytest.fixture

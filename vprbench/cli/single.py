@@ -77,7 +77,7 @@ def run_command(request: Single) -> None:
     if request.trace is not None:
         trace.save(request.trace)
     named = f"[bold]{escape(label(config))}[/bold] on {escape(route.name)}"
-    console.print(f"{named}, a place every {request.distance:g} m", highlight=False)
+    console.print(f"{named}, a place every {request.distance:g} {route.unit}", highlight=False)
     console.print(f"{localizer.recruiting} {sampling:.6g}: {len(recording.place_frames)} places, {len(trace)} queries")
     _print_scores(trace, console)
 

@@ -7,6 +7,7 @@ from hashlib import sha256
 
 import numpy as np
 
+from vprbench.errors import DataError
 from vprbench.route import Traverse
 
 __all__ = ["noisy_compass"]
@@ -19,7 +20,12 @@ def noisy_compass(traverse: Traverse, sd_deg: float, seed: int) -> Traverse:
         traverse: the drive; its frames and positions stay.
         sd_deg: standard deviation of the noise, degrees.
         seed: says which noise; of one seed, twice the standard deviation is twice each error.
+
+    Raises:
+        DataError: the drive has no headings.
     """
+    if traverse.heading_source == "absent":
+        raise DataError(f"{traverse.name}: no headings that could be noisy; leave heading_noise_deg out")
     errors = np.random.default_rng(seed).normal(0.0, np.radians(sd_deg), len(traverse))
     return replace(
         traverse,

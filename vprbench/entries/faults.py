@@ -8,10 +8,16 @@ from dataclasses import fields
 from pydantic import ValidationError
 from pydantic_core import ErrorDetails
 
-from vprbench.entries.folder import FolderEntry, OwnCamera
+from vprbench.entries.folder import FolderEntry
+from vprbench.entries.images import OwnCamera
+from vprbench.entries.index import IndexEntry
 from vprbench.entries.kitti import KittiOdometryEntry, KittiRawEntry
+from vprbench.entries.robotcar import RobotCarEntry
 from vprbench.entries.street import StreetEntry
+from vprbench.entries.utm import UtmEntry
+from vprbench.entries.vpr_bench import VprBenchEntry
 from vprbench.errors import nearest
+from vprbench.readers.crop import Crop
 from vprbench.street.parameters import StreetParameters
 
 __all__ = ["explain"]
@@ -20,8 +26,15 @@ _KEYS: dict[str, set[str]] = {
     "kitti-odometry": set(KittiOdometryEntry.model_fields),
     "kitti-raw": set(KittiRawEntry.model_fields),
     "folder": set(FolderEntry.model_fields),
+    "index": set(IndexEntry.model_fields),
+    "robotcar": set(RobotCarEntry.model_fields),
+    "vpr-bench": set(VprBenchEntry.model_fields),
+    "utm": set(UtmEntry.model_fields),
     "street": set(StreetEntry.model_fields) - {"parameters"} | {field.name for field in fields(StreetParameters)},
 }
+
+# The keys of the tables within an entry.
+_NESTED: dict[str, set[str]] = {"camera": set(OwnCamera.model_fields), "crop": set(Crop.model_fields)}
 
 
 def explain(error: ValidationError) -> str:
@@ -29,7 +42,7 @@ def explain(error: ValidationError) -> str:
     fault = error.errors(include_url=False)[0]
     reader, *loc = fault["loc"] or ("",)
     keys = [str(part) for part in loc if part != "parameters"]
-    said = _said(fault, _KEYS.get(str(reader), set()) if len(keys) < 2 else set(OwnCamera.model_fields))
+    said = _said(fault, _KEYS.get(str(reader), set()) if len(keys) < 2 else _NESTED.get(keys[0], set()))
     return "".join(f".{key}" for key in keys) + f": {said}"
 
 

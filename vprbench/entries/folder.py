@@ -2,75 +2,30 @@
 
 from __future__ import annotations
 
-import math
-from itertools import combinations
 from pathlib import Path
-from typing import Annotated, Literal
-
-from pydantic import AfterValidator, BaseModel, ConfigDict, Field, ValidationInfo, model_validator
+from typing import Literal
 
 from vprbench.availability import Need
-from vprbench.entries.base import Entry
-from vprbench.errors import DataError
+from vprbench.entries.images import ImagesEntry, OwnPath, refuse_shared
 from vprbench.readers.folder import FolderDrive
-from vprbench.readers.images import scaled_camera
-from vprbench.route import Camera, Route
+from vprbench.route import Route
 
-__all__ = ["FolderEntry", "OwnCamera"]
-
-
-def _beside_the_file(path: Path, info: ValidationInfo) -> Path:
-    return Path(info.context["folder"], path.expanduser()) if info.context else path
+__all__ = ["FolderEntry"]
 
 
-_OwnPath = Annotated[Path, AfterValidator(_beside_the_file)]
-
-
-class OwnCamera(BaseModel):
-    """A user's camera: focal length and principal column, or the horizontal field of view.
-
-    Attributes:
-        fx: pixels of the original image.
-        cx: pixels of the original image.
-        field_of_view_deg: degrees, with the principal column in the middle.
-    """
-
-    model_config = ConfigDict(extra="forbid", frozen=True, allow_inf_nan=False)
-
-    fx: Annotated[float, Field(gt=0)] | None = None
-    cx: Annotated[float, Field(gt=0)] | None = None
-    field_of_view_deg: Annotated[float, Field(gt=0, lt=180)] | None = None
-
-    @model_validator(mode="after")
-    def _one_way(self) -> OwnCamera:
-        given = tuple(value is not None for value in (self.fx, self.cx, self.field_of_view_deg))
-        if given not in {(True, True, False), (False, False, True)}:
-            raise ValueError("a camera has either fx and cx or field_of_view_deg")
-        return self
-
-    def reduced(self, width: int) -> Camera:
-        """The camera of the reduced frames, given the width of the original image, pixels."""
-        if self.fx is not None and self.cx is not None:
-            return scaled_camera(self.fx, self.cx, width, "the images")
-        assert self.field_of_view_deg is not None
-        return scaled_camera(width / 2 / math.tan(math.radians(self.field_of_view_deg) / 2), width / 2, width, "")
-
-
-class FolderEntry(Entry):
+class FolderEntry(ImagesEntry):
     """A route of a user's own, each drive a CSV beside its images; paths are relative to the catalogue file.
 
     Attributes:
         learn: the CSV of the learn drive, or the folder that holds its `frames.csv`.
         test: that of the test drive.
         training: those of drives off the route.
-        camera: of all drives.
     """
 
     reader: Literal["folder"]
-    learn: _OwnPath
-    test: _OwnPath
-    training: tuple[_OwnPath, ...] = ()
-    camera: OwnCamera
+    learn: OwnPath
+    test: OwnPath
+    training: tuple[OwnPath, ...] = ()
 
     def needs(self, root: Path) -> tuple[Need, ...]:
         """What must be on disk."""
@@ -79,15 +34,11 @@ class FolderEntry(Entry):
     def read(self, name: str, root: Path) -> Route:
         """The route; with latitude and longitude, in the local plane about the learn drive's first fix."""
         drives = self._drives()
-        for a, b in combinations(drives, 2):
-            shared = sorted({image.resolve() for image in a.images} & {image.resolve() for image in b.images})
-            if shared:
-                more = f" and {len(shared) - 1} more" if len(shared) > 1 else ""
-                raise DataError(f"{a.path} and {b.path} share the image {shared[0]}{more}; leave them out of one")
+        refuse_shared((drive.path, drive.images) for drive in drives)
         origin = None if drives[0].geodetic is None else drives[0].geodetic[0]
         learn, test, *training = (drive.traverse(self.camera.reduced, origin) for drive in drives)
         return Route(name, learn, test, tuple(training), self.environment, self.split)
 
     def _drives(self) -> tuple[FolderDrive, ...]:
         paths = (self.learn, self.test, *self.training)
-        return tuple(FolderDrive(path if path.suffix == ".csv" else path / "frames.csv") for path in paths)
+        return tuple(FolderDrive(path if path.suffix == ".csv" else path / "frames.csv", self.crop) for path in paths)

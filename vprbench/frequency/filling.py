@@ -66,12 +66,9 @@ class Filling:
         """The observation at a metre of the road, from 0 on without end."""
         frame = index % len(self._seen)
         source, seen = self._seen[frame]
-        observation = Observation(
-            frame=seen["frame"],
-            heading=self._headings[[index % len(self._headings)]].astype(np.float64),
-            camera=seen["camera"],
-            gps=np.array([0.0, index], np.float64),
-        )
+        observation = Observation(frame=seen["frame"], camera=seen["camera"], gps=np.array([0.0, index], np.float64))
+        if "heading" in seen:
+            observation["heading"] = self._headings[[index % len(self._headings)]].astype(np.float64)
         return Filled(observation, frame, source if index < len(self._seen) else "again")
 
 

@@ -20,9 +20,10 @@ from jaxtyping import Float64
 
 from vprbench.availability import Need, need_of
 from vprbench.errors import DataError
-from vprbench.geodesy import COURSE_WINDOW, check_geodetic, course, local_positions, wrap
+from vprbench.geodesy import check_geodetic, derived_headings, local_positions, wrap
+from vprbench.readers.crop import Crop
 from vprbench.readers.csv_table import CsvTable, read_csv
-from vprbench.readers.images import ImageFiles, content_hash, image_size
+from vprbench.readers.images import ImageFiles, content_hash, image_size, optics
 from vprbench.readers.number_files import check_increasing
 from vprbench.route import Camera, Traverse
 
@@ -40,9 +41,11 @@ class FolderDrive:
 
     Attributes:
         path: the CSV.
+        crop: the band of its images that becomes the frame; None for all of them.
     """
 
     path: Path
+    crop: Crop | None = None
 
     @cached_property
     def images(self) -> tuple[Path, ...]:
@@ -82,10 +85,10 @@ class FolderDrive:
         times, headings = self._times(positions), self._headings(positions)
         size = image_size(self.images[0])
         seen_by = camera(size[0])
-        parts = (positions, times, headings, np.array([seen_by.fx, seen_by.cx]))
+        parts = (positions, times, headings, *optics(seen_by, self.crop))
         return Traverse(
             name=str(self.path) if self._has_heading else f"{self.path} (headings from its positions)",
-            frames=ImageFiles(self.images, size),
+            frames=ImageFiles(self.images, size, self.crop),
             positions=positions,
             headings=headings,
             times=times,
@@ -93,6 +96,7 @@ class FolderDrive:
             indices=np.arange(len(positions)),
             checksum=content_hash(self.images, *parts),
             geodetic=self.geodetic,
+            heading_source="measured" if self._has_heading else "derived",
         )
 
     @cached_property
@@ -139,9 +143,7 @@ class FolderDrive:
     def _headings(self, positions: Float64[np.ndarray, "n 2"]) -> Float64[np.ndarray, " n"]:
         """Radians in -pi..pi, clockwise from north."""
         if not self._has_heading:
-            if np.linalg.norm(np.diff(positions, axis=0), axis=1).sum() < COURSE_WINDOW:
-                raise DataError(f"{self.path}: too short a drive to see its direction; add a column heading_deg")
-            return course(positions)
+            return derived_headings(positions, str(self.path), "add a column heading_deg")
         degrees = self._table.numbers("heading_deg")
         bad = np.flatnonzero(np.abs(degrees) > 360.0)
         if bad.size:

@@ -12,11 +12,14 @@ import numpy as np
 from jaxtyping import Float64, UInt8
 
 from vprbench.errors import DataError
+from vprbench.readers.bayer import Bayer, demosaiced
+from vprbench.readers.crop import Crop
 from vprbench.route import Camera
 from vprbench.types import FRAME_HEIGHT, FRAME_WIDTH, Frame
 
-__all__ = ["ImageFiles", "content_hash", "image_size", "read_grey", "scaled_camera"]
+__all__ = ["ImageFiles", "content_hash", "image_files", "image_size", "optics", "read_grey", "scaled_camera"]
 
+_SUFFIXES = {".png", ".jpg", ".jpeg"}
 _PNG = b"\x89PNG\r\n\x1a\n"
 _JPEG, _JPEG_END = b"\xff\xd8\xff", b"\xff\xd9"
 
@@ -27,21 +30,27 @@ class ImageFiles:
 
     Attributes:
         paths: the file of frame 0, 1, ...
-        size: width and height that every file must have, pixels.
+        size: width and height that every file must have, pixels; None where they may differ.
+        crop: the band of the images that becomes the frame; None for all of them, squeezed.
+        bayer: the colour filter of a raw sensor image.
     """
 
     paths: tuple[Path, ...]
-    size: tuple[int, int]
+    size: tuple[int, int] | None
+    crop: Crop | None = None
+    bayer: Bayer | None = None
 
     def __getitem__(self, index: int, /) -> Frame:
         """Frame `index`, reduced by pixel area; DataError where its file is not a whole 8-bit image."""
         path = self.paths[index]
         image = read_grey(path)
-        if image.shape[::-1] != self.size:
+        if self.size is not None and image.shape[::-1] != self.size:
             raise DataError(
                 f"{path}: {_times(image.shape[::-1])} pixels where the drive's other frames have "
                 f"{_times(self.size)}: one drive, one camera"
             )
+        image = image if self.bayer is None else demosaiced(image, self.bayer)
+        image = image if self.crop is None else self.crop.band(image, str(path))
         return cv2.resize(image, (FRAME_WIDTH, FRAME_HEIGHT), interpolation=cv2.INTER_AREA).astype(np.uint8)
 
 
@@ -60,6 +69,17 @@ def read_grey(path: Path) -> UInt8[np.ndarray, "height width"]:
     return np.asarray(grey, np.uint8)
 
 
+def image_files(folder: Path) -> list[Path]:
+    """The PNG and JPEG files of a folder by name; DataError where it cannot be read or has none."""
+    try:
+        found = sorted(path for path in folder.iterdir() if path.suffix.lower() in _SUFFIXES)
+    except OSError as error:
+        raise DataError(f"{folder}: cannot be read ({error.strerror})") from error
+    if not found:
+        raise DataError(f"{folder}: no PNG or JPEG image in it")
+    return found
+
+
 def image_size(path: Path) -> tuple[int, int]:
     """Width and height of an image file, pixels."""
     height, width = read_grey(path).shape
@@ -75,6 +95,14 @@ def scaled_camera(fx: float, cx: float, width: int, image: str) -> Camera:
         raise DataError(f"{image}: {width} pixels wide, but cx is {cx:g}: not the calibration of these images")
     scale = FRAME_WIDTH / width
     return Camera(float(fx * scale), float(cx * scale))
+
+
+def optics(camera: Camera, crop: Crop | None) -> tuple[Float64[np.ndarray, " n"], ...]:
+    """The numbers of a camera and a crop, for the checksum of a drive: without a crop those of the camera alone."""
+    seen_by = np.array([camera.fx, camera.cx])
+    if crop is None:
+        return (seen_by,)
+    return seen_by, np.array([np.nan if edge is None else edge for edge in (crop.top, crop.rows)], np.float64)
 
 
 def content_hash(paths: tuple[Path, ...], *arrays: Float64[np.ndarray, "..."]) -> str:

@@ -6,7 +6,6 @@ import numpy as np
 
 from vprbench.route import Route
 from vprbench.trace import Trace
-from vprbench.truth import revisit
 from vprbench.types import NO_PLACE
 
 __all__ = ["place_frames"]
@@ -21,8 +20,7 @@ def place_frames(trace: Trace, route: Route) -> dict[int, int]:
     A place was learned at the one frame that lies `error_m` away from every query answered with it. A place that
     several frames could be, on a road symmetrical about all of its queries, is left out.
     """
-    gaps = revisit(route.learn.positions, route.test.positions).gaps
-    fits = np.abs(gaps - trace.error_m[:, None]) < _SAME
+    fits = np.abs(route.visit.gaps - trace.error_m[:, None]) < _SAME
     found = {}
     for place in np.unique(trace.hypothesis[trace.hypothesis != NO_PLACE]):
         candidates = np.flatnonzero(fits[trace.hypothesis == place].all(axis=0))

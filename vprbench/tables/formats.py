@@ -59,7 +59,7 @@ def title(table: Table) -> str:
     rule = "metric rule" if table.metric.endswith("_metric") else "place-field rule"
     label = LABELS.get(table.metric.removesuffix("_metric"))
     named = f"{label} ({rule})" if label else FREE_OF_RULES.get(table.metric, table.metric)
-    symbol = unit(table.metric).symbol
+    symbol = unit(table.metric, table.length).symbol
     return f"{named}{f', in {symbol}' if symbol else ''}, by {_named(table.axes[1])}"
 
 

@@ -20,10 +20,10 @@ class Unit(NamedTuple):
     symbol: str
 
 
-def unit(metric: str) -> Unit:
-    """The unit of a column of the results: metres, per cent for the other metrics, else as it is."""
+def unit(metric: str, length: str = "m") -> Unit:
+    """The unit of a column of the results: that of lengths, per cent for the other metrics, else as it is."""
     if metric.endswith("_m"):
-        return Unit(1.0, 2, "m")
+        return Unit(1.0, 2, length)
     return Unit(100.0, 1, "%") if metric in METRICS else Unit(1.0, 3, "")
 
 
@@ -63,6 +63,7 @@ class Table:
         entries: one tuple a row.
         cells: how many cells were asked for.
         failed: ids of those that failed.
+        length: what distances and errors are in: metres, frames, or either.
     """
 
     metric: str
@@ -72,6 +73,7 @@ class Table:
     entries: tuple[tuple[Entry, ...], ...]
     cells: int
     failed: tuple[str, ...]
+    length: str = "m"
 
     def transposed(self) -> Table:
         """The same table with rows and columns exchanged."""

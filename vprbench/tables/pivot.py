@@ -49,12 +49,12 @@ def make_table(
     _check_request(results, rows, columns, metric)
     if columns == "agent":
         return make_table(results, rows=columns, columns=rows, metric=metric).transposed()
-    return _pivot(_tidy(results, rows, columns, metric), rows, columns, metric)
+    return _pivot(_tidy(results, rows, columns, metric), rows, columns, metric, _length(results))
 
 
-def _pivot(cells: pd.DataFrame, rows: str, columns: str, metric: str) -> Table:
+def _pivot(cells: pd.DataFrame, rows: str, columns: str, metric: str, length: str) -> Table:
     """The table of tidy cells."""
-    grid, heads = _grid(cells, rows, columns), [_head(columns, key) for key in _keys(cells[columns])]
+    grid, heads = _grid(cells, rows, columns), [_head(columns, key, length) for key in _keys(cells[columns])]
     if len(heads) > 1:
         heads.append("mean")
         grid = [[*line, _mean(line)] for line in grid]
@@ -62,11 +62,12 @@ def _pivot(cells: pd.DataFrame, rows: str, columns: str, metric: str) -> Table:
     return Table(
         metric=metric,
         axes=(rows, columns),
-        rows=tuple(_head(rows, key) for key in _keys(cells[rows])),
+        rows=tuple(_head(rows, key, length) for key in _keys(cells[rows])),
         columns=tuple(heads),
         entries=tuple(zip(*crowned, strict=True)),
         cells=len(cells),
         failed=tuple(cells["cell"][cells["status"] != "ok"]),
+        length=length,
     )
 
 
@@ -126,8 +127,14 @@ def _keys(axis: pd.Series) -> list[str] | list[float]:
     return sorted(map(float, keys)) if pd.api.types.is_numeric_dtype(axis) else keys
 
 
-def _head(axis: str, key: str | float) -> str:
-    return f"{key:g} m" if axis == "sampling_distance_m" else str(key)
+def _length(results: pd.DataFrame) -> str:
+    """What the lengths in the results are in; a cell that failed does not say."""
+    units = sorted(set(results.get("unit", pd.Series(dtype=str))) - {""}, reverse=True)
+    return " or ".join(units) or "m"
+
+
+def _head(axis: str, key: str | float, length: str) -> str:
+    return f"{key:g} {length}" if axis == "sampling_distance_m" else str(key)
 
 
 def _entry(group: pd.DataFrame) -> Entry:

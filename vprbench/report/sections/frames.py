@@ -12,7 +12,6 @@ from vprbench.report.material import Material
 from vprbench.report.places import place_frames
 from vprbench.report.section import Drawing, Section
 from vprbench.route import Route
-from vprbench.truth import revisit
 
 __all__ = ["frames"]
 
@@ -58,7 +57,7 @@ def _drawing(run: Run, routes: Mapping[str, Route]) -> Drawing:
 def _examples(run: Run, route: Route) -> list[Example]:
     """The chosen answers of a run, with their frames."""
     made, trace = place_frames(run.trace, route), run.trace
-    nearest = revisit(route.learn.positions, route.test.positions).nearest
+    nearest = route.visit.nearest
     return [
         Example(
             _said(kind, run, route, index, made),
