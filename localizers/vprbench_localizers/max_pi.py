@@ -7,6 +7,7 @@ where (agreement of azimuths), and a place cell's response is the mean activity 
 from __future__ import annotations
 
 from collections.abc import Sequence
+from functools import partial
 from math import inf, isfinite, radians
 from typing import ClassVar
 
@@ -21,6 +22,7 @@ from vprbench_localizers.calibration import Calibration
 from vprbench_localizers.matching import matches_by_overlap
 from vprbench_localizers.overlap_memory import OverlapMemory
 from vprbench_localizers.pair_memory import PairMemory
+from vprbench_localizers.segments import SegmentedMemory
 from vprbench_localizers.unit_activity import Rule, View
 
 __all__ = ["MaxPi"]
@@ -142,8 +144,8 @@ class MaxPi:
             raise ConfigError("max-pi: no recognition threshold: call fit(drives), or give recognition_threshold")
         return Rule(self.recognition_threshold, self._width, self._reach)
 
-    def _empty_memory(self) -> OverlapMemory | PairMemory:
-        return OverlapMemory() if matches_by_overlap(self.encoder) else PairMemory(self.encoder)
+    def _empty_memory(self) -> SegmentedMemory:
+        return SegmentedMemory(OverlapMemory if matches_by_overlap(self.encoder) else partial(PairMemory, self.encoder))
 
 
 def _require(valid: bool, rule: str, value: object) -> None:

@@ -16,6 +16,7 @@ from vprbench_localizers.max_pi import MaxPi
 from vprbench_localizers.overlap_memory import OverlapMemory
 from vprbench_localizers.pair_memory import PairMemory
 from vprbench_localizers.posting_lists import BLOCK, SECTORS
+from vprbench_localizers.segments import Memory, SegmentedMemory
 from vprbench_localizers.unit_activity import Rule, View
 
 Codes = NDArray[np.float32]
@@ -52,7 +53,7 @@ def views(seed: int, count: int, *, size: int = 12, signed: bool = False, points
     return made
 
 
-def filled(memory: OverlapMemory | PairMemory, places: list[View]) -> OverlapMemory | PairMemory:
+def filled(memory: Memory, places: list[View]) -> Memory:
     assert [memory.add(place) for place in places] == list(range(len(places)))
     return memory
 
@@ -123,10 +124,24 @@ def test_max_pi_takes_it_for_an_encoder_that_says_so() -> None:
     one, other = (MaxPi(encoder, recognition_threshold=0.2) for encoder in (Overlap(), Silent()))
     expected = other.compare(queries, places)
     np.testing.assert_array_equal(one.compare(queries, places), expected)
-    for place in places:
-        one.store(place)
-    assert isinstance(one._memory, OverlapMemory)
     assert np.count_nonzero(expected) > 0
+    assert isinstance(one._memory._make(), OverlapMemory)
+    assert isinstance(other._memory._make(), PairMemory)
+
+
+@pytest.mark.parametrize("places", [1, 7, 20, 21])
+def test_segments_answer_as_one_memory_does(places: int) -> None:
+    stored, rule = views(5, 20), Rule(0.2, 1.0, 3.0)
+    whole, parts = filled(OverlapMemory(), stored), filled(SegmentedMemory(OverlapMemory, places), stored)
+    assert len(parts) == len(whole) == 20
+    for query in views(6, 5):
+        np.testing.assert_array_equal(parts.respond(query, rule), whole.respond(query, rule))
+
+
+def test_a_segmented_memory_of_no_places_answers_nothing() -> None:
+    memory = SegmentedMemory(OverlapMemory)
+    assert len(memory) == 0
+    assert memory.respond(views(0, 1)[0], Rule(0.2, 1.0, 3.0)).shape == (0,)
 
 
 def test_codes_of_two_sizes_are_refused() -> None:
