@@ -39,6 +39,8 @@ class CoHOG:
             the authors' own repository has 0.5).
         magnitude: strength of a gradient, "mean" = |gx + gy| / 2 as the public implementation has it, or "hypot"
             = its length.
+        threads: at most so many share the places of a query between them; the responses do not depend on it. A
+            sweep already runs one worker a core: leave it at 1 there (our choice: as everywhere else).
 
     Raises:
         ConfigError: an option is out of its range.
@@ -46,13 +48,18 @@ class CoHOG:
 
     recruiting: ClassVar[Recruiting] = "step"
 
-    def __init__(self, step: float = 3.0, entropy_threshold: float = 0.4, magnitude: Magnitude = "mean") -> None:
+    def __init__(
+        self, step: float = 3.0, entropy_threshold: float = 0.4, magnitude: Magnitude = "mean", threads: int = 1
+    ) -> None:
         if not 0 <= entropy_threshold <= 1:
             raise ConfigError(f"cohog: entropy_threshold must be 0..1, not {entropy_threshold!r}")
         if magnitude not in get_args(Magnitude):
             raise ConfigError(f"cohog: no magnitude {magnitude!r}: {nearest(magnitude, get_args(Magnitude))}")
+        if threads < 1:
+            raise ConfigError(f"cohog: threads must be 1 or more, not {threads!r}")
         self.entropy_threshold = entropy_threshold
         self.magnitude = magnitude
+        self.threads = threads
         self.clear(step)
 
     def fit(self, drives: Sequence[Sequence[Observation]]) -> None:
@@ -80,7 +87,7 @@ class CoHOG:
     def respond(self, observation: Observation) -> Responses:
         """Response 0..1 of every learned place."""
         responses = np.empty(len(self._memory), np.float32)
-        score_places(self.describe(observation), self._memory.planes, responses)
+        score_places(self.describe(observation), self._memory.planes, responses, self.threads)
         return responses
 
     def describe(self, observation: Observation) -> Description:
@@ -104,5 +111,5 @@ class CoHOG:
         if places:
             memory = np.stack([place.planes for place in places])
             for query, row in zip(queries, responses, strict=True):
-                score_places(query, memory, row)
+                score_places(query, memory, row, self.threads)
         return responses

@@ -139,6 +139,7 @@ def test_a_frame_that_is_not_grey_bytes_is_refused(frame: Any) -> None:  # noqa:
         ({"step": inf}, "step must be"),
         ({"entropy_threshold": 1.5}, "entropy_threshold must be"),
         ({"entropy_threshold": nan}, "entropy_threshold must be"),
+        ({"threads": 0}, "threads must be"),
         ({"magnitude": "hypo"}, "did you mean 'hypot'"),
     ],
 )
