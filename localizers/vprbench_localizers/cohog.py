@@ -16,10 +16,11 @@ from jaxtyping import Float32
 from vprbench.errors import ConfigError, DataError, nearest
 from vprbench.protocols import Recruiting
 from vprbench.recruiting import Odometer
-from vprbench.types import Observation, Responses
+from vprbench.types import NO_PLACE, Hypothesis, Observation, Responses
 from vprbench_localizers.entropy import SIDE, region_entropy
 from vprbench_localizers.hog import Magnitude, cell_histograms
 from vprbench_localizers.place_memory import PlaceMemory
+from vprbench_localizers.place_search import Found, best_place
 from vprbench_localizers.region_match import Description, describe_regions, score_places
 
 __all__ = ["CoHOG"]
@@ -90,6 +91,15 @@ class CoHOG:
         score_places(self.describe(observation), self._memory.planes, responses, self.threads)
         return responses
 
+    def locate(self, observation: Observation) -> Hypothesis:
+        """The place that responds most, and its response: what `respond` would say, found without matching all."""
+        found = self.search(self.describe(observation))
+        return Hypothesis(found.place, found.response) if found.response > 0 else Hypothesis(NO_PLACE, 0.0)
+
+    def search(self, query: Description) -> Found:
+        """What `locate` finds, and how much of the map was matched for it."""
+        return best_place(query, self._memory.planes, self._memory.outlines, self.threads)
+
     def describe(self, observation: Observation) -> Description:
         """The oriented gradients of one observation's regions, and which of them to ask for.
 
@@ -109,7 +119,7 @@ class CoHOG:
         """Response of a place stored as each of `places` to each of `queries`: bitwise what `respond` gives."""
         responses = np.empty((len(queries), len(places)), np.float32)
         if places:
-            memory = np.stack([place.planes for place in places])
+            memory = PlaceMemory.of([place.planes for place in places])
             for query, row in zip(queries, responses, strict=True):
-                score_places(query, memory, row, self.threads)
+                score_places(query, memory.planes, row, self.threads)
         return responses
