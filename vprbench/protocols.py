@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, ClassVar, Literal, Protocol, Self, TypeVar, ru
 import numpy as np
 from jaxtyping import Float32
 
-from vprbench.types import Frame, Landmarks, LearningStep, Observation, Responses
+from vprbench.types import Frame, Hypothesis, Landmarks, LearningStep, Observation, Responses
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -19,6 +19,7 @@ __all__ = [
     "Drawn",
     "Encoder",
     "Localizer",
+    "Locating",
     "Measured",
     "Recruiting",
     "Stepwise",
@@ -155,4 +156,13 @@ class Storing(DescriptorLocalizer[Description], Protocol[Description]):
 
     def store(self, description: Description) -> int:
         """Make a place of a description, whether or not it is due; its index. `learn` stores what is due."""
+        ...
+
+
+@runtime_checkable
+class Locating(Localizer, Protocol):
+    """A localizer that finds the place that responds most sooner than it could respond for every place."""
+
+    def locate(self, observation: Observation) -> Hypothesis:
+        """Exactly `vprbench.types.hypothesis(respond(observation))`."""
         ...

@@ -16,10 +16,11 @@ from jaxtyping import Float32
 from vprbench.errors import ConfigError, DataError, nearest
 from vprbench.protocols import Recruiting
 from vprbench.recruiting import Odometer
-from vprbench.types import Observation, Responses
+from vprbench.types import NO_PLACE, Hypothesis, Observation, Responses
 from vprbench_localizers.entropy import SIDE, region_entropy
 from vprbench_localizers.hog import Magnitude, cell_histograms
 from vprbench_localizers.place_memory import PlaceMemory
+from vprbench_localizers.place_search import Found, best_place
 from vprbench_localizers.region_match import Description, describe_regions, score_places
 
 __all__ = ["CoHOG"]
@@ -39,6 +40,8 @@ class CoHOG:
             the authors' own repository has 0.5).
         magnitude: strength of a gradient, "mean" = |gx + gy| / 2 as the public implementation has it, or "hypot"
             = its length.
+        threads: at most so many share the places of a query between them; the responses do not depend on it. A
+            sweep already runs one worker a core: leave it at 1 there (our choice: as everywhere else).
 
     Raises:
         ConfigError: an option is out of its range.
@@ -46,13 +49,18 @@ class CoHOG:
 
     recruiting: ClassVar[Recruiting] = "step"
 
-    def __init__(self, step: float = 3.0, entropy_threshold: float = 0.4, magnitude: Magnitude = "mean") -> None:
+    def __init__(
+        self, step: float = 3.0, entropy_threshold: float = 0.4, magnitude: Magnitude = "mean", threads: int = 1
+    ) -> None:
         if not 0 <= entropy_threshold <= 1:
             raise ConfigError(f"cohog: entropy_threshold must be 0..1, not {entropy_threshold!r}")
         if magnitude not in get_args(Magnitude):
             raise ConfigError(f"cohog: no magnitude {magnitude!r}: {nearest(magnitude, get_args(Magnitude))}")
+        if threads < 1:
+            raise ConfigError(f"cohog: threads must be 1 or more, not {threads!r}")
         self.entropy_threshold = entropy_threshold
         self.magnitude = magnitude
+        self.threads = threads
         self.clear(step)
 
     def fit(self, drives: Sequence[Sequence[Observation]]) -> None:
@@ -80,8 +88,17 @@ class CoHOG:
     def respond(self, observation: Observation) -> Responses:
         """Response 0..1 of every learned place."""
         responses = np.empty(len(self._memory), np.float32)
-        score_places(self.describe(observation), self._memory.planes, responses)
+        score_places(self.describe(observation), self._memory.planes, responses, self.threads)
         return responses
+
+    def locate(self, observation: Observation) -> Hypothesis:
+        """The place that responds most, and its response: what `respond` would say, found without matching all."""
+        found = self.search(self.describe(observation))
+        return Hypothesis(found.place, found.response) if found.response > 0 else Hypothesis(NO_PLACE, 0.0)
+
+    def search(self, query: Description) -> Found:
+        """What `locate` finds, and how much of the map was matched for it."""
+        return best_place(query, self._memory.planes, self._memory.outlines, self.threads)
 
     def describe(self, observation: Observation) -> Description:
         """The oriented gradients of one observation's regions, and which of them to ask for.
@@ -102,7 +119,7 @@ class CoHOG:
         """Response of a place stored as each of `places` to each of `queries`: bitwise what `respond` gives."""
         responses = np.empty((len(queries), len(places)), np.float32)
         if places:
-            memory = np.stack([place.planes for place in places])
+            memory = PlaceMemory.of([place.planes for place in places])
             for query, row in zip(queries, responses, strict=True):
-                score_places(query, memory, row)
+                score_places(query, memory.planes, row, self.threads)
         return responses

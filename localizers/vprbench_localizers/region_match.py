@@ -27,10 +27,22 @@ from numba import njit
 from numba.extending import intrinsic
 from numpy.typing import NDArray
 
-__all__ = ["PLANES_SHAPE", "Description", "describe_regions", "score_places"]
+from vprbench_localizers.on_threads import on_threads
+
+__all__ = [
+    "PLANES_SHAPE",
+    "STRIPS",
+    "Description",
+    "describe_regions",
+    "match_strip",
+    "score_places",
+    "share_buffers",
+    "total",
+]
 
 CELLS = 32  # a side
 REGIONS = CELLS - 1
+STRIPS = CELLS // 2  # of two rows of regions, which are matched together; the last row of the last is empty
 # A last row of empty cells lets the regions' rows be taken two by two.
 LENGTH = (CELLS + 1) * CELLS
 # Place cells that are the upper ones of a region.
@@ -72,10 +84,23 @@ def describe_regions(cells: Float64[np.ndarray, "32 32 8"], kept: Bool[np.ndarra
 
 
 def score_places(
-    query: Description, places: Float32[np.ndarray, "places 9 1056"], scores: Float32[np.ndarray, " places"]
+    query: Description,
+    places: Float32[np.ndarray, "places 9 1056"],
+    scores: Float32[np.ndarray, " places"],
+    threads: int = 1,
 ) -> None:
-    """Write the score 0..1 of each place; each depends on the query and that place alone, bit by bit."""
-    _score(query.planes, query.weights, places, scores)
+    """Write the score 0..1 of each place; each depends on the query and that place alone, bit by bit.
+
+    Args:
+        query: of which the kept regions are looked for.
+        places: the planes of each place.
+        scores: is filled.
+        threads: at most so many share the places between them.
+    """
+    share = -(-len(places) // threads)
+    firsts = range(0, len(places), max(share, 1))
+    spans = [slice(first, first + share) for first in firsts]
+    on_threads(lambda span: _score(query.planes, query.weights, places[span], scores[span]), spans)
 
 
 def _maximum(_typing: Any, a: Any, _b: Any) -> Any:  # noqa: ANN401 - numba's own types are untyped
@@ -149,17 +174,50 @@ def _best_pair(
 
 
 @njit(cache=True, fastmath=True)
+def match_strip(
+    query: NDArray[np.float32],
+    weights: NDArray[np.float32],
+    place: NDArray[np.float32],
+    strip: int,
+    columns: tuple[NDArray[np.float32], NDArray[np.float32]],
+    shares: NDArray[np.float32],
+) -> None:
+    """Write to `shares`, of two rows of regions, what each column of two adds to the score; see `share_buffers`."""
+    left, right = columns
+    for column in range(CELLS):
+        at = 2 * strip * CELLS + column
+        upper, lower = weights[at], weights[at + CELLS]
+        share = np.float32(0)
+        if upper or lower or weights[at + 1] or weights[at + 1 + CELLS]:
+            best = _best_pair(query, at, place, left, right)
+            share = upper * best[0] + lower * best[1]
+            left, right = right, left
+        shares[strip, column] = share
+
+
+@njit(cache=True)
+def total(shares: NDArray[np.float32]) -> np.float32:
+    """The score that the shares of all regions make, added up in an order that does not depend on who asks."""
+    score = 0.0
+    for strip in range(STRIPS):
+        for column in range(CELLS):
+            score += shares[strip, column]
+    return np.float32(min(score, 1.0))
+
+
+@njit(cache=True)
+def share_buffers() -> tuple[tuple[NDArray[np.float32], NDArray[np.float32]], NDArray[np.float32]]:
+    """Room for the sums of two columns, and for the shares of every strip."""
+    columns = np.zeros((2, LENGTH), np.float32), np.zeros((2, LENGTH), np.float32)
+    return columns, np.zeros((STRIPS, CELLS), np.float32)
+
+
+@njit(cache=True, nogil=True)
 def _score(
     query: NDArray[np.float32], weights: NDArray[np.float32], places: NDArray[np.float32], scores: NDArray[np.float32]
 ) -> None:
-    left, right = np.zeros((2, LENGTH), np.float32), np.zeros((2, LENGTH), np.float32)
+    columns, shares = share_buffers()
     for k in range(len(places)):
-        score = 0.0
-        for row in range(0, REGIONS, 2):
-            for at in range(row * CELLS, (row + 1) * CELLS):
-                upper, lower = weights[at], weights[at + CELLS]
-                if upper or lower or weights[at + 1] or weights[at + 1 + CELLS]:
-                    best = _best_pair(query, at, places[k], left, right)
-                    score += upper * best[0] + lower * best[1]
-                    left, right = right, left
-        scores[k] = min(score, 1.0)
+        for strip in range(STRIPS):
+            match_strip(query, weights, places[k], strip, columns, shares)
+        scores[k] = total(shares)

@@ -1,5 +1,8 @@
 """How long each registered localizer takes to describe a frame, and to answer with 10, 100 and 1000 places.
 
+Group "locate one query" times those that find the best place without the response of every place, against all responses
+at the same turn: `extra_info["per_respond"]` is the ratio of the CPU times of both, over several queries.
+
 One that looks through an encoder is timed with each registered encoder.
 """
 
@@ -8,6 +11,7 @@ from __future__ import annotations
 from collections.abc import Callable, Iterator
 from functools import cache
 from itertools import cycle
+from time import process_time
 from typing import Any, TypeAlias
 
 import numpy as np
@@ -18,9 +22,9 @@ from vprbench.agents import label
 from vprbench.observation import Drive
 from vprbench.options import parameters
 from vprbench.plugins import find, plugins
-from vprbench.protocols import DescriptorLocalizer, Encoder, Localizer, Storing
+from vprbench.protocols import DescriptorLocalizer, Encoder, Localizer, Locating, Storing
 from vprbench.route import Route
-from vprbench.types import Observation
+from vprbench.types import Observation, hypothesis
 
 Agent: TypeAlias = dict[str, str]
 
@@ -115,3 +119,30 @@ def test_respond(
     assert memory.localizer.respond(next(queries)).shape == (places,)
     benchmark.extra_info |= {**agent, "places": places}
     benchmark(lambda: memory.localizer.respond(next(queries)))
+
+
+@pytest.mark.benchmark(group="locate one query")
+@pytest.mark.parametrize("places", [10, 100, 1000])
+@pytest.mark.parametrize("agent", AGENTS, ids=label)
+def test_locate(
+    benchmark: BenchmarkFixture, memory: Memory, queries: Iterator[Observation], agent: Agent, places: int
+) -> None:
+    localizer = memory.localizer
+    if not isinstance(localizer, Locating):
+        pytest.skip("it has no locate")
+    memory.hold(places)
+    asked = next(queries)
+    assert localizer.locate(asked) == hypothesis(localizer.respond(asked))
+    benchmark.extra_info |= {**agent, "places": places}
+    benchmark(lambda: localizer.locate(next(queries)))
+    if benchmark.stats:
+        seen = [next(queries) for _ in range(3)]
+        benchmark.extra_info |= {"per_respond": cpu(localizer.locate, seen) / cpu(localizer.respond, seen)}
+
+
+def cpu(answer: Callable[[Observation], object], queries: list[Observation]) -> float:
+    """Seconds of CPU time that answers take."""
+    started = process_time()
+    for query in queries:
+        answer(query)
+    return process_time() - started

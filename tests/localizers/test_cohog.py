@@ -91,6 +91,16 @@ def test_streaming_gives_bit_by_bit_what_the_matrix_gives(toy_route: Route) -> N
 
 
 @pytest.mark.kitti
+@pytest.mark.parametrize("threads", [1, 2])
+def test_it_locates_on_a_street_what_responds_most(kitti_root: Path, threads: int) -> None:
+    route, localizer = load_route("KITTI-K0-2", data=kitti_root), CoHOG(step=2.0, threads=threads)
+    for seen in Drive(route.learn):
+        localizer.learn(seen)
+    for query in Drive(route.test, gps=False)[::16]:
+        assert localizer.locate(query) == hypothesis(localizer.respond(query))
+
+
+@pytest.mark.kitti
 def test_it_recognises_a_street_seen_before(kitti_root: Path) -> None:
     route, localizer = load_route("KITTI-K0-2", data=kitti_root), CoHOG(step=3.0)
     where = np.array([seen["gps"] for seen in Drive(route.learn) if localizer.learn(seen) is not None])
@@ -139,6 +149,7 @@ def test_a_frame_that_is_not_grey_bytes_is_refused(frame: Any) -> None:  # noqa:
         ({"step": inf}, "step must be"),
         ({"entropy_threshold": 1.5}, "entropy_threshold must be"),
         ({"entropy_threshold": nan}, "entropy_threshold must be"),
+        ({"threads": 0}, "threads must be"),
         ({"magnitude": "hypo"}, "did you mean 'hypot'"),
     ],
 )

@@ -12,6 +12,8 @@ def test_places_keep_their_order_and_values_while_the_memory_grows() -> None:
     assert indices == list(range(40))
     assert len(memory) == 40
     assert memory.planes.flags.c_contiguous
+    assert memory.planes.ctypes.data % 64 == 0
+    np.testing.assert_allclose(memory.outlines[1:], 128**-0.5, rtol=1e-5)
     np.testing.assert_array_equal(memory.planes[:, 3, 5], np.arange(40))
 
 
@@ -22,3 +24,10 @@ def test_adding_seldom_copies_what_is_stored() -> None:
         memory.add(planes)
         arrays.add(memory.planes.ctypes.data)
     assert len(arrays) <= 6
+
+
+def test_a_memory_is_made_of_places() -> None:
+    memory = PlaceMemory.of([np.full((9, 1056), value, np.float32) for value in range(3)])
+    assert memory.add(np.full((9, 1056), 3, np.float32)) == 3
+    np.testing.assert_array_equal(memory.planes[:, 0, 0], range(4))
+    assert len(PlaceMemory.of([])) == 0

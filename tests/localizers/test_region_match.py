@@ -14,10 +14,10 @@ Cells = NDArray[np.float64]
 SEEDS = st.integers(0, 2**32 - 1)
 
 
-def score(query: Cells, kept: NDArray[np.bool_], *places: Cells) -> NDArray[np.float32]:
+def score(query: Cells, kept: NDArray[np.bool_], *places: Cells, threads: int = 1) -> NDArray[np.float32]:
     scores = np.full(len(places), np.nan, np.float32)
     planes = np.stack([describe_regions(cells, kept).planes for cells in places])
-    score_places(describe_regions(query, kept), planes, scores)
+    score_places(describe_regions(query, kept), planes, scores, threads)
     return scores
 
 
@@ -129,3 +129,16 @@ def test_the_score_does_not_depend_on_the_other_places_by_one_bit() -> None:
     together = score(query, kept, *places)
     alone = [score(query, kept, place)[0] for place in places]
     assert together.tolist() == alone
+
+
+@pytest.mark.parametrize("threads", [2, 3, 5, 8])
+def test_the_score_does_not_depend_on_the_number_of_threads_by_one_bit(threads: int) -> None:
+    query, places = random_cells(3), [random_cells(seed) for seed in range(4, 9)]
+    kept = np.random.default_rng(0).random((31, 31)) < 0.4
+    assert score(query, kept, *places, threads=threads).tolist() == score(query, kept, *places).tolist()
+
+
+def test_no_places_get_no_scores_on_any_number_of_threads() -> None:
+    query, none = describe_regions(random_cells(3), keep()), np.empty(0, np.float32)
+    for threads in (1, 2):
+        score_places(query, np.empty((0, *query.planes.shape), np.float32), none, threads)

@@ -14,8 +14,8 @@ from vprbench.checks.check import Check, DoesNotApply, Suite, expect
 from vprbench.checks.localizer_subject import LocalizerSubject, encoder_of
 from vprbench.checks.samples import flat_frame, training_drives, training_frames
 from vprbench.plugins import missing
-from vprbench.protocols import DescriptorLocalizer, Localizer, Recruiting, Storing
-from vprbench.types import Observation
+from vprbench.protocols import DescriptorLocalizer, Localizer, Locating, Recruiting, Storing
+from vprbench.types import Observation, hypothesis
 
 __all__ = ["localizer_checks"]
 
@@ -265,3 +265,18 @@ def _store_makes_places_outright(subject: LocalizerSubject) -> None:
     expect(made == list(range(len(places))), f"store makes a place of all that it is given: 0, 1, ..., not {made!r}")
     same = np.array_equal(_answers(subject.fitted, places), answers)
     expect(same, "places that are stored respond as those that are learned")
+
+
+@_suite.add
+def _locate_agrees_with_respond(subject: LocalizerSubject) -> None:
+    localizer = subject.cleared()
+    if not isinstance(localizer, Locating):
+        raise DoesNotApply("it has no locate, which is optional")
+    # The same views elsewhere: one that recruits by road makes places of them that respond alike.
+    again = [Observation(**{**seen, "gps": seen["gps"] + 100.0}) for seen in subject.drive]
+    for learned in ([], subject.drive, again):
+        for seen in learned:
+            localizer.learn(seen)
+        for asked in map(_blind, [*subject.drive, subject.unseen]):
+            found, meant = localizer.locate(asked), hypothesis(localizer.respond(asked))
+            expect(tuple(found) == meant, f"locate gives {tuple(meant)}, as respond has it, not {found!r}")

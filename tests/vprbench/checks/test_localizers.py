@@ -15,7 +15,7 @@ import pytest
 from vprbench.agents import build
 from vprbench.checks import DoesNotApply, localizer_checks
 from vprbench.protocols import DescriptorLocalizer, Localizer, Recruiting
-from vprbench.types import Observation, Responses
+from vprbench.types import Hypothesis, Observation, Responses, hypothesis
 
 THIRD_PARTY = Path(__file__).parents[2] / "third_party"
 
@@ -75,6 +75,13 @@ class GoodStep(Good):
 
     def __init__(self) -> None:
         self.good = build("thumbnail")
+
+
+class GoodLocator(GoodStep):
+    """The same, with a shorter way to the best place."""
+
+    def locate(self, observation: Observation) -> Hypothesis:
+        return hypothesis(self.respond(observation))
 
 
 class HasNoRespond:
@@ -284,6 +291,24 @@ class StoresTheFirstOnly(GoodStore):
         return super().store(good.places[0] if good.places else description)
 
 
+class LocatesTheLast(GoodLocator):
+    def locate(self, observation: Observation) -> Hypothesis:
+        responses = self.respond(observation)
+        place, confidence = super().locate(observation)
+        return Hypothesis(max(np.flatnonzero(responses == confidence).tolist(), default=place), confidence)
+
+
+class LocatesRoughly(GoodLocator):
+    def locate(self, observation: Observation) -> Hypothesis:
+        place, confidence = super().locate(observation)
+        return Hypothesis(place, float(np.nextafter(np.float32(confidence), np.float32(0))))
+
+
+class LocatesWithoutPlaces(GoodLocator):
+    def locate(self, observation: Observation) -> Hypothesis:
+        return Hypothesis(max(super().locate(observation).place, 0), super().locate(observation).confidence)
+
+
 # The check that a wrong localizer is made for, and the further ones that catch it as well.
 WRONG: list[tuple[str, Callable[[], Localizer], set[str]]] = [
     ("says-what-recruits", RecruitsByMood, {"recruits-as-often-as-asked"}),
@@ -311,6 +336,9 @@ WRONG: list[tuple[str, Callable[[], Localizer], set[str]]] = [
     ("clear-forgets", Resents, set()),
     ("respond-agrees-with-compare", ComparesPairsDifferently, set()),
     ("respond-agrees-with-compare", ComparesRoughly, set()),
+    ("locate-agrees-with-respond", LocatesTheLast, set()),
+    ("locate-agrees-with-respond", LocatesRoughly, set()),
+    ("locate-agrees-with-respond", LocatesWithoutPlaces, set()),
     ("learn-agrees-with-compare", LearnsAtAnotherVigilance, set()),
     ("store-makes-places-outright", StoresOnlyWhatIsNew, set()),
     ("store-makes-places-outright", StoresTheFirstOnly, set()),
@@ -330,7 +358,7 @@ def failing(factory: Callable[[], Localizer]) -> set[str]:
     return failed
 
 
-@pytest.mark.parametrize("good", [Good, GoodDescriptor, GoodStore, GoodStep])
+@pytest.mark.parametrize("good", [Good, GoodDescriptor, GoodStore, GoodStep, GoodLocator])
 def test_a_good_localizer_passes(good: Callable[[], Localizer]) -> None:
     assert failing(good) == set()
 
