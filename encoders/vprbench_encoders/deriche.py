@@ -62,48 +62,58 @@ def _smoothing(alpha: float) -> _Filter:
 
 @njit(cache=True)
 def _recurse(
-    image: NDArray[np.float32],
+    image: NDArray[np.float32] | NDArray[np.uint8],
     taps: _Taps,
     lag: int,
     order: NDArray[np.int64],
+    states: NDArray[np.float32],
     out: NDArray[np.float32],
 ) -> None:
     """Add to `out` one recursion down the rows visited in `order`, its input `lag` rows ahead of its output.
 
     The rows beyond the border repeat the border row: the filter starts in the state it would then have reached.
     """
-    rows, columns = image.shape
     near, following, feedback, damping, steady = taps
-    before = image[order[0]].copy()
-    last = before * steady
-    last2 = last.copy()
-    for step in range(rows):
-        source = image[order[max(step - lag, 0)]]
+    for j in range(image.shape[1]):
+        states[0, j] = states[1, j] = np.float32(image[order[0], j]) * steady
+    for step in range(len(order)):
+        source, before = image[order[max(step - lag, 0)]], image[order[max(step - lag - 1, 0)]]
+        # The newest state takes the place of the last but one, so that none is copied.
+        last, last2 = states[step & 1], states[1 - (step & 1)]
         target = out[order[step]]
-        for j in range(columns):
-            value = near * source[j] + following * before[j] + feedback * last[j] - damping * last2[j]
-            last2[j] = last[j]
-            last[j] = value
-            before[j] = source[j]
+        for j in range(len(target)):
+            driven = near * np.float32(source[j]) + following * np.float32(before[j])
+            value = driven + feedback * last[j] - damping * last2[j]
+            last2[j] = value
             target[j] += value
 
 
-def _filter_down(image: Float32[np.ndarray, "height width"], filter_: _Filter) -> Float32[np.ndarray, "height width"]:
+def _filter_down(
+    image: Float32[np.ndarray, "height width"] | UInt8[np.ndarray, "height width"], filter_: _Filter
+) -> Float32[np.ndarray, "height width"]:
     """The image filtered along its columns; whole rows advance together, so the recursion vectorises."""
-    out = np.zeros_like(image)
+    out, states = np.zeros(image.shape, np.float32), np.empty((2, image.shape[1]), np.float32)
     down = np.arange(len(image))
-    _recurse(image, filter_.causal, 0, down, out)
-    _recurse(image, filter_.anticausal, 1, down[::-1].copy(), out)
+    _recurse(image, filter_.causal, 0, down, states, out)
+    _recurse(image, filter_.anticausal, 1, down[::-1].copy(), states, out)
     return out
+
+
+def _turned_gradient(
+    image: Float32[np.ndarray, "height width"] | UInt8[np.ndarray, "height width"], alpha: float
+) -> tuple[Float32[np.ndarray, "width height"], Float32[np.ndarray, "width height"]]:
+    """The transposes of the derivatives along x and along y."""
+    derivative, smoothing = _derivative(alpha), _smoothing(alpha)
+    across = _filter_down(cv2.transpose(_filter_down(image, smoothing)), derivative)
+    along = _filter_down(cv2.transpose(_filter_down(image, derivative)), smoothing)
+    return across, along
 
 
 def gradient(
     image: Float32[np.ndarray, "height width"], alpha: float = 1.0
 ) -> tuple[Float32[np.ndarray, "height width"], Float32[np.ndarray, "height width"]]:
     """The derivatives along x and along y, in grey levels per pixel; the border is repeated outwards."""
-    derivative, smoothing = _derivative(alpha), _smoothing(alpha)
-    across = _filter_down(cv2.transpose(_filter_down(image, smoothing)), derivative)
-    along = _filter_down(cv2.transpose(_filter_down(image, derivative)), smoothing)
+    across, along = _turned_gradient(image, alpha)
     return cv2.transpose(across), cv2.transpose(along)
 
 
@@ -111,4 +121,4 @@ def gradient_magnitude(
     frame: UInt8[np.ndarray, "height width"], alpha: float = 1.0
 ) -> Float32[np.ndarray, "height width"]:
     """The length of the Deriche gradient at every pixel, in grey levels per pixel."""
-    return cv2.magnitude(*gradient(frame.astype(np.float32, order="C"), alpha))
+    return cv2.transpose(cv2.magnitude(*_turned_gradient(np.ascontiguousarray(frame), alpha)))

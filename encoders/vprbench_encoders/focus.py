@@ -24,6 +24,28 @@ __all__ = ["FocusDetector"]
 _NEIGHBOURHOOD = np.ones((3, 3), np.uint8)
 
 
+def _inside(image: Float32[np.ndarray, "height width"], margin: int) -> Float32[np.ndarray, "rows columns"]:
+    """The part of an image that is at least `margin` from its border."""
+    height, width = image.shape
+    return image[margin : height - margin, margin : width - margin]
+
+
+def _blurred(
+    image: Float32[np.ndarray, "height width"], sigma: float, margin: int
+) -> Float32[np.ndarray, "rows columns"]:
+    """The image under a Gaussian, without its margin, of which no more is blurred than the kernel reaches."""
+    reach = (round(8 * sigma + 1) | 1) // 2  # as OpenCV sizes the kernel
+    unseen = max(margin - reach, 0)
+    return _inside(cv2.GaussianBlur(_inside(image, unseen), (0, 0), sigma), margin - unseen)
+
+
+def _local_maxima(saliency: Float32[np.ndarray, "height width"], floor: np.float32) -> Int64[np.ndarray, "2 maxima"]:
+    """Row and column, from the second on, of pixels above `floor` that no neighbour exceeds; the highest first."""
+    level, highest = _inside(saliency, 1), _inside(cv2.dilate(saliency, _NEIGHBOURHOOD), 1)
+    maxima = np.stack(np.divmod(np.flatnonzero((level >= highest) & (level > floor)), level.shape[1]))
+    return maxima[:, np.argsort(-level[*maxima], kind="stable")]
+
+
 @njit(cache=True)
 def _compete(candidates: NDArray[np.float32], radius: np.float32, points: int) -> NDArray[np.float32]:
     """The first `points` candidates (u, v) that lie at least `radius` from every one kept before them."""
@@ -79,9 +101,11 @@ class FocusDetector:
             raise DataError(f"a frame is a grey uint8 image (height, width), not {frame.dtype} {frame.shape}")
         return gradient_magnitude(frame, self.alpha)
 
-    def saliency(self, gradient: Float32[np.ndarray, "height width"]) -> Float32[np.ndarray, "height width"]:
-        """How much more gradient there is near each pixel than around it."""
-        inner, outer = (cv2.GaussianBlur(gradient, (0, 0), sigma) for sigma in self.sigmas)
+    def saliency(
+        self, gradient: Float32[np.ndarray, "height width"], margin: int = 0
+    ) -> Float32[np.ndarray, "rows columns"]:
+        """How much more gradient there is near each pixel than around it, but for a margin at the border."""
+        inner, outer = (_blurred(gradient, sigma, margin) for sigma in self.sigmas)
         return cv2.subtract(inner, outer)
 
     def find(self, gradient: Float32[np.ndarray, "height width"]) -> Float32[np.ndarray, "points 2"]:
@@ -89,14 +113,8 @@ class FocusDetector:
 
         A frame without any gradient has none.
         """
-        v, u = self._local_maxima(self.saliency(gradient))
+        if min(gradient.shape) <= 2 * self.margin:
+            return np.empty((0, 2), np.float32)
+        # The neighbours of the pixels on the margin are one pixel nearer to the border.
+        v, u = _local_maxima(self.saliency(gradient, self.margin - 1), np.float32(self.floor)) + self.margin
         return _compete(np.stack([u, v], axis=1).astype(np.float32), np.float32(self.radius), self.points)
-
-    def _local_maxima(self, saliency: Float32[np.ndarray, "height width"]) -> Int64[np.ndarray, "2 maxima"]:
-        """Row v and column u of pixels above the floor that none of their eight neighbours exceeds, highest first."""
-        inside = tuple(slice(self.margin, side - self.margin) for side in saliency.shape)
-        level, highest = saliency[inside], cv2.dilate(saliency, _NEIGHBOURHOOD)[inside]
-        maxima = np.flatnonzero((level >= highest) & (level > np.float32(self.floor)))
-        where = np.stack(np.divmod(maxima, max(level.shape[1], 1)))
-        strongest = np.argsort(-level[*where], kind="stable")
-        return where[:, strongest] + self.margin
