@@ -75,13 +75,21 @@ def _split(source: str, names: Collection[str]) -> tuple[str | None, str]:
 def _checked(place: str, source: str) -> str:
     """The place, which must be there, or have an address that can be asked."""
     if is_url(place):
-        if urlsplit(place).scheme not in ("http", "https") or not urlsplit(place).netloc:
+        if not _is_web(place):
             raise ConfigError(f"--source {source}: give a path, or an address that begins with https:// or http://")
         return place
     path = Path(place).expanduser()
     if not path.exists():
         raise ConfigError(f"--source {source}: there is no such file or folder")
     return str(path)
+
+
+def _is_web(url: str) -> bool:
+    try:
+        parts = urlsplit(url)
+    except ValueError:
+        return False
+    return parts.scheme in ("http", "https") and bool(parts.hostname)
 
 
 def _is_folder(place: str) -> bool:

@@ -43,18 +43,18 @@ class HttpFile:
     """A file on a web server that answers range requests.
 
     Attributes:
-        name: its address, for messages.
+        name: its address, without passwords and tokens, for messages.
         size: bytes.
         requests: how many were sent so far.
         received: bytes that came of them.
     """
 
     def __init__(self, url: str, patience: Patience | None = None) -> None:
-        self.name, self.patience = url, patience or Patience()
+        self._url, self.name, self.patience = url, _shown(url), patience or Patience()
         self.requests, self.received = 0, 0
         self.size = -1
         self._version: tuple[str | None, str | None] = (None, None)
-        self._session = requests.Session()
+        self._session = _Session()
         # A compressed answer would count bytes of something else than the file.
         self._session.headers.update({"Accept-Encoding": "identity", "User-Agent": "vprbench"})
         try:
@@ -91,7 +91,7 @@ class HttpFile:
         with self._answer(first, stop) as answer:
             self._check_range(answer, first)
             # read1 gives what has come; read, and iter_content on it, lose a chunk in which the connection drops.
-            while chunk := answer.raw.read1(_CHUNK, decode_content=False):
+            while len(data) < stop - start and (chunk := answer.raw.read1(_CHUNK, decode_content=False)):
                 wanted = chunk[: stop - start - len(data)]
                 data += wanted
                 self.received += len(wanted)
@@ -102,16 +102,15 @@ class HttpFile:
     @contextmanager
     def _answer(self, start: int, stop: int) -> Iterator[requests.Response]:
         """The server's answer to a range request, after redirections."""
-        url = self.name
+        url = self._url
         for _ in range(_REDIRECTS + 1):
             self.requests += 1
             with self._ask(url, start, stop) as answer:
-                target = self._session.get_redirect_target(answer)
-                if target is None:
+                if not answer.is_redirect:
                     self._check_status(answer)
                     yield answer
                     return
-            url = self._redirected(url, target)
+            url = self._redirected(url, answer.headers["Location"])
         raise DataError(f"{self.name}: redirects more than {_REDIRECTS} times; name another --source")
 
     def _ask(self, url: str, start: int, stop: int) -> requests.Response:
@@ -122,16 +121,23 @@ class HttpFile:
                 url, headers=headers, stream=True, allow_redirects=False, timeout=self.patience.timeout
             )
         except SSLError as error:
-            raise DataError(f"{url}: the server cannot prove who it is ({_cause(error)})") from error
+            raise DataError(f"{_shown(url)}: the server cannot prove who it is ({_cause(error)})") from error
         except (InvalidSchema, InvalidURL) as error:
-            raise DataError(f"{url}: not an address that can be asked ({_cause(error)})") from error
+            raise DataError(f"{_shown(url)}: not an address that can be asked ({_cause(error)})") from error
 
     def _redirected(self, url: str, target: str) -> str:
         """The next address, which may be no less safe than this one."""
-        following = urljoin(url, target)
+        try:
+            following = urljoin(url, target)
+        except ValueError as error:
+            raise DataError(
+                f"{self.name}: redirects to {target!r}, which is no address; name another --source"
+            ) from error
         allowed = ("https",) if urlsplit(url).scheme == "https" else ("http", "https")
         if urlsplit(following).scheme not in allowed:
-            raise DataError(f"{self.name}: redirects to {following}, which is not {' or '.join(allowed)}; refused")
+            raise DataError(
+                f"{self.name}: redirects to {_shown(following)}, which is not {' or '.join(allowed)}; refused"
+            )
         return following
 
     def _check_status(self, answer: requests.Response) -> None:
@@ -176,8 +182,21 @@ class HttpFile:
         return f"{self.name}: dropped {self.patience.attempts} times at byte {position} ({cause}); {_AGAIN}"
 
 
+class _Session(requests.Session):
+    """A session that looks at no redirection, which it would read whole before we have judged where it leads."""
+
+    def get_redirect_target(self, resp: requests.Response) -> None:
+        """None."""
+
+
 class _TransientError(Exception):
     """An answer that may be another if the question is repeated."""
+
+
+def _shown(url: str) -> str:
+    """An address that may be told: without a user's name and password, and without what follows the path."""
+    parts = urlsplit(url)
+    return parts._replace(netloc=parts.netloc.rpartition("@")[2], query="", fragment="").geturl()
 
 
 def _cause(error: BaseException) -> str:

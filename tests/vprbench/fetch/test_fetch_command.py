@@ -163,6 +163,8 @@ def test_raw_drives_come_with_their_fixes(raw_tree: Path, world: World, tell: Te
     ("source", "fault"),
     [
         ("ftp://host/data_odometry_gray.zip", "begins with https:// or http://"),
+        ("http://[host/data_odometry_gray.zip", "begins with https:// or http://"),
+        ("https:///data_odometry_gray.zip", "begins with https:// or http://"),
         ("/nowhere/data_odometry_gray.zip", "there is no such file or folder"),
         ("https://host/odometry.zip", "which archive is it? Write --source NAME=https://host/odometry.zip"),
         ("data_grey=https://host/x.zip", "no archive 'data_grey' is needed: did you mean 'data_odometry_gray'?"),

@@ -6,6 +6,7 @@ import os
 import shutil
 import socket
 from collections.abc import Callable
+from contextlib import suppress
 from itertools import pairwise
 from pathlib import Path
 from typing import TYPE_CHECKING
@@ -132,10 +133,39 @@ def test_what_came_before_the_fault_stays(world: World, tell: Tell) -> None:
     assert set(world.written()) == set(world.wanted) and world.sound()
 
 
+def flood(handler: Handler, start: int, stop: int) -> bool:
+    """Send what is asked for, and then no end of it."""
+    handler.part(start, stop, headers={"Content-Length": str(1 << 40)})
+    with suppress(OSError):
+        while True:
+            handler.wfile.write(bytes(1 << 16))
+    handler.close_connection = True
+    return True
+
+
+def test_what_was_not_asked_for_is_not_read(world: World, tell: Tell) -> None:
+    world.server.fault = flood
+    assert tell.fetch().code == 0
+    assert set(world.written()) == set(world.wanted) and world.sound()
+
+
+def test_passwords_and_tokens_are_not_told(world: World, tell: Tell) -> None:
+    world.server.fault = answering(404)
+    secret = world.server.url(GREY).replace("http://", "http://me:secret@") + "?token=secret"
+    done = tell.fetch(secret)
+    assert world.server.log[0][0] == f"/{GREY}?token=secret"
+    assert world.server.url(GREY) in done.fault and "secret" not in done.fault
+
+
 @pytest.mark.parametrize("target", ["ftp://127.0.0.1/x.zip", "file:///etc/passwd"])
 def test_a_redirection_elsewhere_than_to_the_web_is_refused(world: World, tell: Tell, target: str) -> None:
     world.server.fault = redirecting(target)
     assert f"redirects to {target}, which is not http or https; refused" in tell.fetch().fault
+
+
+def test_a_redirection_to_nowhere_is_told(world: World, tell: Tell) -> None:
+    world.server.fault = redirecting("http://[x/")
+    assert "redirects to 'http://[x/', which is no address" in tell.fetch().fault
 
 
 def test_redirections_are_followed_but_not_for_ever(world: World, tell: Tell) -> None:
