@@ -100,7 +100,10 @@ def run(
 
 @app.command(epilog="Example: vprbench fetch KITTI-K5-1 --data ~/kitti --dry-run")
 def fetch(
-    names: Annotated[list[str], typer.Argument(help="Routes, or sweeps whose routes are meant, for example paper.")],
+    names: Annotated[
+        list[str],
+        typer.Argument(metavar="ROUTE", help="Routes, or sweeps whose routes are meant, for example paper."),
+    ],
     data: Data = None,
     routes: Routes = None,
     accept_licence: Annotated[

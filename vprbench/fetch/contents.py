@@ -5,7 +5,6 @@ Members are asked for by names that we make up, and written where we say: no nam
 
 from __future__ import annotations
 
-import re
 import stat
 import struct
 import zipfile
@@ -15,13 +14,10 @@ from functools import cached_property
 
 from vprbench.errors import DataError
 from vprbench.fetch.byte_source import ByteSource, WindowedFile
+from vprbench.fetch.names import leads_out
 from vprbench.reporting import Report, silent
 
 __all__ = ["Contents"]
-
-# Names that would lead out of the folder where an archive is unpacked. We would not follow them; but an archive that
-# has one was made to harm, and is not to be trusted with anything.
-_ESCAPING = re.compile(r"/|[A-Za-z]:|(?:.*/)?\.\.(?:/|$)|.*[\\\x00]", re.DOTALL)
 
 # Bytes; the largest files of KITTI have about one million. Our choice.
 _LARGEST = 1 << 26
@@ -53,7 +49,8 @@ class Contents:
         except _FAULTS as error:
             raise DataError(f"{source.name}: not a zip archive, or not all of one ({_said(error)})") from error
         for info in self._zip.infolist():
-            if _ESCAPING.match(info.orig_filename):
+            # It would not be followed; but an archive that has one was made to harm.
+            if leads_out(info.orig_filename):
                 raise DataError(
                     f"{source.name}: holds {info.orig_filename!r}, which leads out of the folder it is for: "
                     "not to be trusted; name another --source"
