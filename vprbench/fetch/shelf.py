@@ -9,7 +9,7 @@ from vprbench.fetch.addresses import Addresses, is_url
 from vprbench.fetch.archives import Location
 from vprbench.fetch.byte_source import LocalFile
 from vprbench.fetch.contents import Contents
-from vprbench.fetch.http import HttpFile
+from vprbench.fetch.http_file import HttpFile
 
 __all__ = ["Shelf"]
 

@@ -207,5 +207,5 @@ class Tell:
 def tell(world: World, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch) -> Tell:
     """The command line, pointed at the world."""
     waits: list[float] = []
-    monkeypatch.setattr("vprbench.fetch.http.sleep", waits.append)
+    monkeypatch.setattr("vprbench.fetch.http_file.sleep", waits.append)
     return Tell(world, capsys, monkeypatch, waits)

@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING
 import pytest
 
 from vprbench.errors import DataError
-from vprbench.fetch.http import HttpFile, Patience
+from vprbench.fetch.http_file import HttpFile, Patience
 
 if TYPE_CHECKING:
     from tests.vprbench.fetch.conftest import Handler, Server
