@@ -8,7 +8,7 @@ import tempfile
 from collections.abc import Iterable, Sequence
 from pathlib import Path
 
-from vprbench.atomic import replacing
+from vprbench.atomic import clear_leftovers, replacing
 from vprbench.errors import DataError
 from vprbench.fetch.plan import ArchivePlan
 from vprbench.fetch.ranges import Stretch, stretches
@@ -25,12 +25,14 @@ def transfer(plans: Iterable[ArchivePlan]) -> int:
 def check_disk(plans: Sequence[ArchivePlan], root: Path) -> None:
     """Raise DataError unless everything to be written can be: before anything is fetched."""
     needed = sum(plan.bytes for plan in plans)
+    paths = [item.path for plan in plans for item in plan.todo]
     try:
-        for folder in sorted({item.path.parent for plan in plans for item in plan.todo}):
+        for folder in sorted({path.parent for path in paths}):
             folder.mkdir(parents=True, exist_ok=True)
             # A folder may be there and yet refuse files.
             with tempfile.TemporaryFile(dir=folder):
                 pass
+            clear_leftovers(folder, {path.name for path in paths})
         free = shutil.disk_usage(root).free if needed else 0
     except OSError as error:
         raise _unwritable(Path(error.filename or root), error) from error

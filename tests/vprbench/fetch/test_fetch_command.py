@@ -101,6 +101,19 @@ def test_an_interrupted_fetch_goes_on(world: World, tell: Tell) -> None:
     assert set(world.written()) == set(world.wanted) and world.sound()
 
 
+def test_what_a_killed_fetch_left_is_cleared_away(world: World, tell: Tell) -> None:
+    folder = world.root / "dataset" / "sequences" / "00" / "image_0"
+    folder.mkdir(parents=True)
+    for name in (".000003.png.77.tmp", ".000004.png.tmp", ".000002.png.77.tmp", ".mine.png.1.tmp"):
+        (folder / name).write_bytes(b"half")
+    assert tell.fetch().code == 0
+    assert [path.name for path in sorted(folder.glob(".*"))] == [
+        ".000002.png.77.tmp",
+        ".000004.png.tmp",
+        ".mine.png.1.tmp",
+    ]
+
+
 def test_local_archives_are_taken_by_name(world: World, tell: Tell, tmp_path: Path) -> None:
     folder = world.server.folder
     shutil.move(folder / POSES, folder / "p.zip")

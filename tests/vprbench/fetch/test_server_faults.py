@@ -210,9 +210,12 @@ def test_a_full_disk_is_told_before_anything_is_fetched(
 @pytest.mark.skipif(not Path("/dev/full").exists(), reason="no disk that is full")
 def test_a_disk_that_fills_up_on_the_way_is_told(world: World, tell: Tell) -> None:
     frame = world.root / world.wanted[5]
-    frame.parent.mkdir(parents=True)
-    temporary = frame.parent / f".{frame.name}.{os.getpid()}.tmp"
-    temporary.symlink_to("/dev/full")
+
+    def fill(handler: Handler, start: int, stop: int) -> bool:
+        (frame.parent / f".{frame.name}.{os.getpid()}.tmp").symlink_to("/dev/full")
+        return False
+
+    world.server.fault = frames_only(fill)
     assert tell.fetch().fault == (
         f"vprbench: {frame}: the disk is full; make room and run the same command again: it goes on from there"
     )
