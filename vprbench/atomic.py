@@ -3,11 +3,12 @@
 from __future__ import annotations
 
 import os
-from collections.abc import Iterator
+import re
+from collections.abc import Container, Iterator
 from contextlib import contextmanager
 from pathlib import Path
 
-__all__ = ["replacing"]
+__all__ = ["clear_leftovers", "replacing"]
 
 
 @contextmanager
@@ -19,3 +20,11 @@ def replacing(path: Path) -> Iterator[Path]:
         temporary.replace(path)
     finally:
         temporary.unlink(missing_ok=True)
+
+
+def clear_leftovers(folder: Path, names: Container[str]) -> None:
+    """Remove what writers of files of these names left in a folder when they were killed."""
+    for path in folder.iterdir():
+        match = re.fullmatch(r"\.(.+)\.\d+\.tmp", path.name)
+        if match is not None and match[1] in names:
+            path.unlink(missing_ok=True)

@@ -26,6 +26,8 @@ class Need:
         missing: those of them that lack a file.
         absent: other files that are not there (poses, times, calibration).
         remedy: how to get them.
+        files: all that are needed, of frames and others.
+        public: whether `vprbench fetch` can get them.
     """
 
     source: str
@@ -34,6 +36,8 @@ class Need:
     missing: tuple[int, ...]
     absent: tuple[Path, ...]
     remedy: str
+    files: tuple[Path, ...] = ()
+    public: bool = False
 
     @property
     def complete(self) -> bool:
@@ -81,19 +85,33 @@ class Availability:
         """Whether the route can be loaded."""
         return all(need.complete for need in self.needs)
 
+    @property
+    def wanting(self) -> tuple[Need, ...]:
+        """The needs that are not met."""
+        return tuple(need for need in self.needs if not need.complete)
+
+    @property
+    def hint(self) -> str:
+        """The command that gets what is missing, as a sentence; empty where none does."""
+        public = any(need.public for need in self.wanting)
+        return f"`vprbench fetch {self.route}` gets what is missing." if public else ""
+
     def require(self) -> None:
         """Raise DataError, with the remedy, unless everything is there."""
-        wanting = [need for need in self.needs if not need.complete]
-        if wanting:
-            remedies = dict.fromkeys(need.remedy for need in wanting)
-            raise DataError(
-                f"{self.route} needs {'; and '.join(map(str, wanting))}. {' '.join(remedies)} "
-                "`vprbench list` shows what is there."
-            )
+        if self.wanting:
+            remedies = dict.fromkeys(need.remedy for need in self.wanting)
+            said = [f"{self.route} needs {'; and '.join(map(str, self.wanting))}.", self.hint, *remedies]
+            raise DataError(" ".join([*filter(None, said), "`vprbench list` shows what is there."]))
 
 
 def need_of(
-    source: str, folder: Path, frames: Mapping[int, tuple[Path, ...]], others: Iterable[Path], remedy: str
+    source: str,
+    folder: Path,
+    frames: Mapping[int, tuple[Path, ...]],
+    others: Iterable[Path],
+    remedy: str,
+    *,
+    public: bool = False,
 ) -> Need:
     """A recording's need, checked against its folders' listings (no file is opened).
 
@@ -103,11 +121,14 @@ def need_of(
         frames: the files of each frame number needed.
         others: the other files needed.
         remedy: how to get them, a sentence.
+        public: whether `vprbench fetch` can get them.
     """
+    others = tuple(others)
     listings = {parent: _names(parent) for parent in {path.parent for paths in frames.values() for path in paths}}
     missing = tuple(sorted(i for i, paths in frames.items() if any(p.name not in listings[p.parent] for p in paths)))
     absent = tuple(path for path in others if not path.is_file())
-    return Need(source, folder, tuple(sorted(frames)), missing, absent, remedy)
+    files = tuple(path for i in sorted(frames) for path in frames[i]) + others
+    return Need(source, folder, tuple(sorted(frames)), missing, absent, remedy, files, public)
 
 
 def _short(frames: Sequence[int]) -> str:

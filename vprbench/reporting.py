@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import Protocol, runtime_checkable
 
-__all__ = ["Report", "silent"]
+__all__ = ["Report", "part_of", "silent"]
 
 
 @runtime_checkable
@@ -18,3 +18,18 @@ class Report(Protocol):
 
 def silent(stage: str, done: int, total: int, note: str = "") -> None:
     """A report to nobody."""
+
+
+def part_of(report: Report, before: int, whole: int) -> Report:
+    """A report of a part, told on as that of the whole.
+
+    Args:
+        report: of the whole.
+        before: how much of it is done when the part begins.
+        whole: how much there is of it.
+    """
+
+    def tell(stage: str, done: int, total: int, note: str = "") -> None:
+        report(stage, before + done, whole, note)
+
+    return tell

@@ -37,6 +37,19 @@ def test_require_says_everything_once(tmp_path: Path) -> None:
     assert "\n" not in text
 
 
+def test_what_is_public_names_the_command_that_gets_it(tmp_path: Path) -> None:
+    frames = {i: (tmp_path / f"{i}.png", tmp_path / f"{i}.txt") for i in range(2)}
+    (tmp_path / "0.png").touch()
+    own, public = (need_of("A", tmp_path, frames, (tmp_path / "p",), "", public=public) for public in (False, True))
+    assert [path.name for path in public.files] == ["0.png", "0.txt", "1.png", "1.txt", "p"]
+    assert Availability("R-1", (own,)).hint == ""
+    assert Availability("R-1", (own, public)).hint == "`vprbench fetch R-1` gets what is missing."
+    for path in public.files:
+        path.touch()
+    there = need_of("A", tmp_path, frames, (tmp_path / "p",), "", public=True)
+    assert Availability("R-1", (there,)).hint == ""
+
+
 def test_a_missing_table_alone_is_a_want(tmp_path: Path) -> None:
     (tmp_path / "0.png").touch()
     need = need_of("A", tmp_path, {0: (tmp_path / "0.png",)}, (tmp_path / "poses",), "Fetch it.")

@@ -121,6 +121,7 @@ def test_missing_frames_are_met_by_route_sequence_place_and_remedy(odometry_tree
     assert "frames 0-9, 117-149 of KITTI odometry sequence 05: 0 of 43" in text
     assert "grayscale, 22 GB" in text
     assert all(word in text for word in ("--data", "VPRBENCH_DATA", "vprbench list"))
+    assert "`vprbench fetch KITTI-K0-1` gets what is missing." in text
     assert "\n" not in text
 
 

@@ -34,3 +34,7 @@ def test_a_named_folder_must_be_one(tmp_path: Path, monkeypatch: pytest.MonkeyPa
     monkeypatch.setenv("VPRBENCH_DATA", str(tmp_path / "nowhere"))
     with pytest.raises(DataError, match=r"VPRBENCH_DATA names .*nowhere, which is not a folder"):
         data_root()
+
+
+def test_a_root_that_is_to_be_made_need_not_be_there(tmp_path: Path) -> None:
+    assert data_root(tmp_path / "nowhere", there=False) == tmp_path / "nowhere"

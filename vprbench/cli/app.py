@@ -12,6 +12,7 @@ __all__ = [
     "check",
     "claims",
     "compare",
+    "fetch",
     "fit",
     "frequency",
     "list_",
@@ -95,6 +96,38 @@ def run(
     from vprbench.cli.single import Single, run_command
 
     run_command(Single(route, agent, distance, seed, data, routes, trace, video, cache))
+
+
+@app.command(epilog="Example: vprbench fetch KITTI-K5-1 --data ~/kitti --dry-run")
+def fetch(
+    names: Annotated[
+        list[str],
+        typer.Argument(metavar="ROUTE", help="Routes, or sweeps whose routes are meant, for example paper."),
+    ],
+    data: Data = None,
+    routes: Routes = None,
+    accept_licence: Annotated[
+        bool, typer.Option("--accept-licence", help="You accept the data's licence; without it, it is only shown.")
+    ] = False,
+    dry_run: Annotated[
+        bool, typer.Option("--dry-run", help="Only say what is there, and how much there is to fetch.")
+    ] = False,
+    source: Annotated[
+        list[str] | None,
+        typer.Option(
+            help="A zip in place of its publisher's: path or address, or NAME=path; or a folder of such zips, or a "
+            "mirror's address that ends in /. May be given several times."
+        ),
+    ] = None,
+) -> None:
+    """Fetch the public data that routes need, and no more: single files out of KITTI's archives.
+
+    Of each archive only the table of contents and those files are read. Files that are there already, whole and
+    unchanged, are left alone. Stop it when you like: the next call goes on where it stopped.
+    """
+    from vprbench.cli.fetching import Fetching, fetch_command
+
+    raise typer.Exit(fetch_command(Fetching(names, data, routes, accept_licence, dry_run, source or ())))
 
 
 @app.command(epilog="Example: vprbench fit hsd-12 hsd-15-30 --route Street-Wide --seeds 0,1,2")

@@ -27,7 +27,7 @@ __all__ = ["Motion", "OdometryCamera", "OdometrySequence", "filmed", "read_motio
 OdometryCamera = Literal["image_0", "image_2"]
 
 _REMEDY = (
-    "Unzip the KITTI odometry benchmark's {images}, calibration files and ground truth poses "
+    "Or unzip the KITTI odometry benchmark's {images}, calibration files and ground truth poses "
     "(https://www.cvlibs.net/datasets/kitti/eval_odometry.php) there, or say where they are with --data or "
     "VPRBENCH_DATA."
 )
@@ -71,7 +71,9 @@ class OdometrySequence:
         files = {i: (self._file(i),) for i in frames}
         others = [self.poses, self.folder / "times.txt", self.folder / "calib.txt"]
         remedy = _REMEDY.format(images=_IMAGES[self.camera])
-        return need_of(f"KITTI odometry sequence {self.name}", self.folder / self.camera, files, others, remedy)
+        return need_of(
+            f"KITTI odometry sequence {self.name}", self.folder / self.camera, files, others, remedy, public=True
+        )
 
     @cached_property
     def motion(self) -> Motion:

@@ -65,13 +65,13 @@ class RawDrive:
     def need(self, frames: Iterable[int]) -> Need:
         """These frames with their fixes, and the day's calibration."""
         remedy = (
-            f"Unzip the [synced+rectified data] of {self.name} and the [calibration] of its day, KITTI raw data "
+            f"Or unzip the [synced+rectified data] of {self.name} and the [calibration] of its day, KITTI raw data "
             f"(https://www.cvlibs.net/datasets/kitti/raw_data.php), in {self.root}, or say where they are with "
             "--data or VPRBENCH_DATA."
         )
         files = {i: (self._image(i), self._fix(i)) for i in frames}
         others = (self.calibration, self.timestamps)
-        return need_of(f"KITTI raw drive {self.name}", self.folder, files, others, remedy)
+        return need_of(f"KITTI raw drive {self.name}", self.folder, files, others, remedy, public=True)
 
     def fixes(self, frames: Iterable[int]) -> Float64[np.ndarray, "n 3"]:
         """Latitude and longitude, degrees, and yaw, radians, at each frame."""

@@ -34,6 +34,7 @@ def test_what_is_left_out_is_told_with_the_reason(bare: Path, tell: Tell) -> Non
     assert "tiny: 4 cells to measure" in done.err
     assert "left out: KITTI-K5-1 needs" in done.err
     assert "0 of 242 are in" in done.err
+    assert "`vprbench fetch KITTI-K5-1` gets what is missing." in done.err
     assert "KITTI-K5-1" not in done.out
     assert "left out" not in tell("sweep", "tiny.toml", "--dry-run", "--filter", "Tiny/2m").err
 
