@@ -7,7 +7,7 @@ import pandas as pd
 from vprbench.bootstrap import INTERVAL_METRICS
 from vprbench.metrics import METRICS
 
-__all__ = ["COLUMNS", "IMPLIED", "typed"]
+__all__ = ["COLUMNS", "IMPLIED", "length_unit", "typed"]
 
 _INTERVALS = [f"{name}{rule}_{end}" for rule in ("", "_metric") for name in INTERVAL_METRICS for end in ("low", "high")]
 
@@ -46,6 +46,12 @@ COLUMNS: dict[str, str] = {
 
 # Columns that a table may lack, and what it then says: before there were others, every distance was in metres.
 IMPLIED = {"unit": "m", "heading_source": ""}
+
+
+def length_unit(table: pd.DataFrame) -> str:
+    """What the lengths in a table are in: "m", "frames", or "m or frames"; a cell that failed does not say."""
+    units = sorted(set(table.get("unit", pd.Series(dtype=str))) - {""}, reverse=True)
+    return " or ".join(units) or IMPLIED["unit"]
 
 
 def typed(table: pd.DataFrame) -> pd.DataFrame:

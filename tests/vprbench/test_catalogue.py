@@ -4,12 +4,14 @@ import pickle
 from collections.abc import Callable
 from pathlib import Path
 
+import cv2
 import numpy as np
 import pytest
 
 from vprbench.catalogue import Catalogue, catalogue, load_route
 from vprbench.entries import KittiOdometryEntry
 from vprbench.errors import ConfigError, DataError
+from vprbench.readers.images import read_grey
 from vprbench.readers.number_files import read_numbers
 from vprbench.route import Route
 from vprbench.truth import revisit
@@ -69,6 +71,22 @@ def test_a_folder_route_on_the_globe_has_one_origin(own_drive: Writer, tmp_path:
     own_drive(csv.format(east=8.0001), "day2")
     # A ten-thousandth of a degree of the equator.
     assert gaps(load_route("my-road", tmp_path, own(tmp_path, FOLDER))) == pytest.approx([11.132] * 4, abs=0.01)
+
+
+@pytest.mark.parametrize(
+    ("crop", "rows"),
+    [('"centre"', slice(20, 79)), ("{ top = 5 }", slice(5, 64)), ("{ top = 40, rows = 50 }", slice(40, 90))],
+)
+def test_a_crop_is_data_of_the_route(own_drive: Writer, tmp_path: Path, crop: str, rows: slice) -> None:
+    path = own_drive(LOCAL.format(east=0.0))
+    own_drive(LOCAL.format(east=2.0), "day2")
+    whole = load_route("my-road", tmp_path, own(tmp_path, FOLDER))
+    route = load_route("my-road", tmp_path, own(tmp_path, FOLDER + f"crop = {crop}\n"))
+    # 200 x 100 pixels: 200 * 188 / 642 = 58.6 rows have the shape of a frame.
+    band = read_grey(path.parent / "img" / "3.png")[rows]
+    assert np.array_equal(route.learn.frames[3], cv2.resize(band, (642, 188), interpolation=cv2.INTER_AREA))
+    assert route.learn.camera == whole.learn.camera
+    assert route.learn.checksum != whole.learn.checksum
 
 
 def test_drives_that_share_an_image_are_refused(own_drive: Writer, tmp_path: Path) -> None:

@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 import re
+import sys
+from collections.abc import Callable
 from pathlib import Path
 
 import cv2
@@ -10,6 +12,7 @@ import numpy as np
 import pytest
 
 from vprbench.catalogue import catalogue, load_route
+from vprbench.cli import main
 
 PAGE = (Path(__file__).parents[2] / "docs" / "routes.md").read_text("utf-8")
 
@@ -41,6 +44,36 @@ def test_the_other_readers_take_their_examples(tmp_path: Path) -> None:
     built_in = catalogue().names()
     readers = {known.entry(name).reader for name in known.names() if name not in built_in}
     assert readers == {"kitti-odometry", "kitti-raw", "street"}
+
+
+@pytest.mark.parametrize(
+    ("file", "readers"),
+    [
+        ("index", ["index", "index"]),
+        ("vpr-bench", ["vpr-bench"]),
+        ("utm", ["utm"]),
+        ("robotcar", ["robotcar"]),
+    ],
+)
+def test_data_sets_of_others_take_their_examples(tmp_path: Path, file: str, readers: list[str]) -> None:
+    (tmp_path / "my.toml").write_text(block("toml", f"# {file}.toml"))
+    known, built_in = catalogue(tmp_path / "my.toml"), catalogue().names()
+    assert [known.entry(name).reader for name in known.names() if name not in built_in] == readers
+
+
+def test_gardens_point_runs_as_the_page_says(
+    tmp_path: Path, draw_view: Callable[..., None], monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    for number in range(12):
+        draw_view(tmp_path / "GardensPointWalking" / "day_left" / f"Image{number:03d}.jpg", number)
+        draw_view(tmp_path / "GardensPointWalking" / "night_right" / f"Image{number:03d}.jpg", number)
+    (tmp_path / "my.toml").write_text(block("toml", "# index.toml"))
+    words = ["run", "gardens-point", "cohog", "--routes", str(tmp_path / "my.toml"), "--distance", "2"]
+    monkeypatch.setattr(sys, "argv", ["vprbench", *words])
+    with pytest.raises(SystemExit) as ended:
+        main()
+    assert not ended.value.code
+    assert "cohog on gardens-point, a place every 2 frames" in capsys.readouterr().out
 
 
 def test_every_route_that_the_page_names_is_there() -> None:

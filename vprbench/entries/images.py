@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Iterable, Sequence
 from itertools import combinations
+from os.path import realpath  # Path.resolve raises where links run in a circle
 from pathlib import Path
 from typing import Annotated
 
@@ -78,7 +79,7 @@ class ImagesEntry(Entry):
 def refuse_shared(drives: Iterable[tuple[Path, Sequence[Path]]]) -> None:
     """Refuse drives, each a name and its images, of which two share an image, whatever name it goes by: DataError."""
     for (a, images), (b, others) in combinations(drives, 2):
-        shared = sorted({image.resolve() for image in images} & {image.resolve() for image in others})
+        shared = sorted({realpath(image) for image in images} & {realpath(image) for image in others})
         if shared:
             more = f" and {len(shared) - 1} more" if len(shared) > 1 else ""
             raise DataError(f"{a} and {b} share the image {shared[0]}{more}; leave them out of one")

@@ -20,7 +20,7 @@ __all__ = ["UNSEEN_CAMERA", "IndexEntry", "Numbered"]
 # Where there are no headings, nothing of ours asks for the camera. Our choice.
 UNSEEN_CAMERA = OwnCamera(field_of_view_deg=60.0)
 
-_RUN = re.compile(r"(?P<folder>.+):(?P<first>\d+)-(?P<last>\d+)", re.ASCII)
+_RUN = re.compile(r"(?P<folder>.+):(?P<first>\d{1,6})-(?P<last>\d{1,6})", re.ASCII)
 
 
 def _numbered(text: object, info: ValidationInfo) -> NumberedImages:

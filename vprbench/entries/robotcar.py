@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import re
 from pathlib import Path
 from typing import Annotated, Literal
 
@@ -10,23 +9,17 @@ from pydantic import BeforeValidator, Field
 
 from vprbench.availability import Need
 from vprbench.entries.images import ImagesEntry, refuse_shared
-from vprbench.frame_ranges import FrameRun
-from vprbench.readers.robotcar import FixSource, RobotCarCamera, RobotCarDrive, Thinning
+from vprbench.readers.robotcar import FixSource, RobotCarCamera, RobotCarDrive, Stretch, Thinning
 from vprbench.route import Route
 
 __all__ = ["RobotCarEntry"]
 
-_ALWAYS = 10**18 - 1
+
+def _stretch(value: object) -> object:
+    return Stretch.parse(value) if isinstance(value, str) else value
 
 
-def _stretch(text: object) -> object:
-    """A drive's name alone is all of it; "name:first-last" is what lies between two timestamps."""
-    if isinstance(text, str) and re.fullmatch(r"[\w.-]+", text, re.ASCII):
-        return FrameRun(text, 0, _ALWAYS)
-    return FrameRun.parse(text) if isinstance(text, str) else text
-
-
-_Stretch = Annotated[FrameRun, BeforeValidator(_stretch)]
+_Stretch = Annotated[Stretch, BeforeValidator(_stretch)]
 
 
 class RobotCarEntry(ImagesEntry):
@@ -68,6 +61,6 @@ class RobotCarEntry(ImagesEntry):
     def _drives(self, root: Path) -> tuple[RobotCarDrive, ...]:
         thinning = Thinning(self.every, self.spacing)
         return tuple(
-            RobotCarDrive(root, run, self.view, self.fixes, thinning, self.raw, self.crop)
-            for run in (self.learn, self.test, *self.training)
+            RobotCarDrive(root, stretch, self.view, self.fixes, thinning, self.raw, self.crop)
+            for stretch in (self.learn, self.test, *self.training)
         )

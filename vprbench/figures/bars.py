@@ -9,6 +9,7 @@ import numpy as np
 import pandas as pd
 from jaxtyping import Float64
 
+from vprbench.columns import length_unit
 from vprbench.errors import ConfigError, nearest
 from vprbench.figures.panels import distinct, plain, show_legend
 from vprbench.figures.style import GREY, INK, agent_colours, caption, house_style, mixed, new_figure
@@ -29,7 +30,7 @@ _MARGIN, _FIGURE = 0.7, 0.24
 # Inches that a letter of a group's name takes.
 _LETTER = 0.072
 
-_AXES = {"route": "", "sampling_distance_m": "sampling distance, m"}
+_AXES = {"route": "", "sampling_distance_m": "sampling distance, {unit}"}
 
 # What a cell has beside its agent.
 _COUNTED = {"route": "route", "sampling_distance_m": "distance", "seed": "seed"}
@@ -76,7 +77,7 @@ def score_bars(
         else:
             _draw_groups(axes, rows, metric, by, colours)
             _name_groups(axes, _groups(rows, by), names or {})
-            axes.set_xlabel(_AXES.get(by, plain(by)) if axis is None else axis)
+            axes.set_xlabel(_AXES.get(by, plain(by)).replace("{unit}", length_unit(rows)) if axis is None else axis)
             show_legend(figure, colours, agents)
         quoted = by is None and not set(paper or {}).isdisjoint(agents)
         diamonds = " Diamonds: as the paper states, on its own route." if quoted else ""

@@ -16,7 +16,7 @@ if TYPE_CHECKING:
 
 __all__ = ["error_distribution", "precision_recall"]
 
-# Metres: less than this no position is known to.
+# Metres: less than this no position is known to; nor is an error of no frame at all drawn at zero.
 _NEAREST = 0.1
 
 
@@ -35,10 +35,10 @@ def precision_recall(runs: Sequence[Run], colours: Mapping[str, str]) -> Figure:
     return figure
 
 
-def error_distribution(runs: Sequence[Run], colours: Mapping[str, str]) -> Figure:
-    """Share of all queries answered within so many metres; a query without an answer never is."""
+def error_distribution(runs: Sequence[Run], colours: Mapping[str, str], unit: str = "m") -> Figure:
+    """Share of all queries answered within so many metres, or frames; a query without an answer never is."""
     with house_style():
-        figure, axes = panels(runs, height=1.6, x="error, m", y="share of queries")
+        figure, axes = panels(runs, height=1.6, x=f"error, {unit}", y="share of queries")
         for run in runs:
             panel = axes[run.route, run.distance]
             known = np.sort(run.trace.error_m[~np.isnan(run.trace.error_m)])

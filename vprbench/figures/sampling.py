@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 import pandas as pd
 
+from vprbench.columns import length_unit
 from vprbench.figures.panels import distinct, plain, show_legend
 from vprbench.figures.style import house_style, new_figure
 
@@ -44,14 +45,14 @@ def metrics_by_distance(rows: pd.DataFrame, metrics: Mapping[str, str], colours:
                     _draw(axes, group, metric, colours[str(agent)], shifts.get(str(agent)))
         for label, top, bottom in zip(metrics.values(), grid[0], grid[-1], strict=True):
             top.set_title(label)
-            bottom.set_xlabel("sampling distance, m")
+            bottom.set_xlabel(f"sampling distance, {length_unit(rows)}")
         grid[0, 0].set_xticks(sorted(rows["sampling_distance_m"].unique()))
         show_legend(figure, colours, rows["agent"])
     return figure
 
 
 def _shifts(rows: pd.DataFrame) -> dict[str, float]:
-    """How far, in metres, each agent's bars stand beside the distance; nothing where they have bands."""
+    """How far each agent's bars stand beside the distance; nothing where they have bands."""
     agents = distinct(rows["agent"])
     if len(agents) <= _BANDS:
         return {}

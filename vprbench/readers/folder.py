@@ -88,7 +88,7 @@ class FolderDrive:
         parts = (positions, times, headings, *optics(seen_by, self.crop))
         return Traverse(
             name=str(self.path) if self._has_heading else f"{self.path} (headings from its positions)",
-            frames=ImageFiles(self.images, size, self.crop),
+            frames=ImageFiles(self.images, size, crop=self.crop),
             positions=positions,
             headings=headings,
             times=times,

@@ -86,7 +86,7 @@ class NumberedImages:
         positions = np.column_stack([np.zeros(len(numbers)), numbers.astype(np.float64)])
         return Traverse(
             name=self.name,
-            frames=ImageFiles(paths, size if self.one_size else None, self.crop),
+            frames=ImageFiles(paths, size if self.one_size else None, crop=self.crop),
             positions=positions,
             headings=np.full(len(numbers), np.nan),
             times=numbers.astype(np.float64),

@@ -8,6 +8,7 @@ inertial unit, not of the camera.
 
 from __future__ import annotations
 
+import re
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from functools import cached_property
@@ -19,7 +20,6 @@ from jaxtyping import Float64, Int64
 
 from vprbench.availability import Need, need_of
 from vprbench.errors import DataError
-from vprbench.frame_ranges import FrameRun
 from vprbench.geodesy import derived_headings, local_positions
 from vprbench.readers.bayer import Bayer, is_colour
 from vprbench.readers.crop import Crop
@@ -29,7 +29,7 @@ from vprbench.readers.number_files import check_increasing, read_text
 from vprbench.recruiting import Odometer
 from vprbench.route import Camera, Traverse
 
-__all__ = ["FixSource", "RobotCarCamera", "RobotCarDrive", "Thinning"]
+__all__ = ["FixSource", "RobotCarCamera", "RobotCarDrive", "Stretch", "Thinning"]
 
 RobotCarCamera = Literal["stereo/left", "stereo/centre", "stereo/right", "mono_left", "mono_right", "mono_rear"]
 FixSource = Literal["ins", "gps"]
@@ -40,6 +40,33 @@ _COLUMNS = (
     *("latitude_sigma", "longitude_sigma", "altitude_sigma", "northing", "easting", "down", "utm_zone"),
     *("velocity_north", "velocity_east", "velocity_down", "roll", "pitch", "yaw"),
 )
+
+
+@dataclass(frozen=True)
+class Stretch:
+    """A drive, or what lies between two timestamps of it.
+
+    Attributes:
+        drive: its name, "2014-12-09-13-21-02".
+        first: microseconds, of the first image at the earliest; None: from its beginning.
+        last: microseconds, of the last image at the latest; None: to its end.
+    """
+
+    drive: str
+    first: int | None = None
+    last: int | None = None
+
+    @classmethod
+    def parse(cls, text: str) -> Stretch:
+        """Read "drive" or "drive:first-last"; ValueError where it is neither."""
+        match = re.fullmatch(r"([\w.-]+?)(?::(\d{1,18})-(\d{1,18}))?", text, re.ASCII)
+        if match is None:
+            raise ValueError(f'{text!r} is neither "drive" nor "drive:first-last", its timestamps in microseconds')
+        if match[2] is None:
+            return cls(match[1])
+        if int(match[2]) >= int(match[3]):
+            raise ValueError(f"{text!r} ends before it begins")
+        return cls(match[1], int(match[2]), int(match[3]))
 
 
 @dataclass(frozen=True)
@@ -57,11 +84,11 @@ class Thinning:
 
 @dataclass(frozen=True)
 class RobotCarDrive:
-    """One drive on disk, or the part of it between two timestamps.
+    """One drive on disk, or a stretch of it.
 
     Attributes:
         root: the folder that holds the drives.
-        run: its name, "2014-12-09-13-21-02", and the first and last timestamp, microseconds.
+        stretch: its name, and which of it.
         camera: whose images are taken.
         fixes: the inertial system's, or the GPS receiver's alone, which knows no heading.
         thinning: which frames are kept.
@@ -70,7 +97,7 @@ class RobotCarDrive:
     """
 
     root: Path
-    run: FrameRun
+    stretch: Stretch
     camera: RobotCarCamera = "stereo/centre"
     fixes: FixSource = "ins"
     thinning: Thinning = Thinning()
@@ -80,7 +107,7 @@ class RobotCarDrive:
     @property
     def folder(self) -> Path:
         """The drive's own folder."""
-        return self.root / self.run.sequence
+        return self.root / self.stretch.drive
 
     @property
     def timestamps(self) -> Path:
@@ -100,11 +127,11 @@ class RobotCarDrive:
     def need(self) -> Need:
         """The frames, numbered as they are listed; the list, and the fixes."""
         remedy = (
-            f"Unpack {self.camera} and gps of the drive {self.run.sequence} of Oxford RobotCar "
+            f"Unpack {self.camera} and gps of the drive {self.stretch.drive} of Oxford RobotCar "
             f"(https://robotcar-dataset.robots.ox.ac.uk) in {self.root}, or say where they are with --data or "
             "VPRBENCH_DATA."
         )
-        source, others = f"RobotCar drive {self.run.sequence}", (self.timestamps, self.table)
+        source, others = f"RobotCar drive {self.stretch.drive}", (self.timestamps, self.table)
         absent = tuple(path for path in others if not path.is_file())
         if absent:
             return Need(source, self.folder, (), (), absent, remedy)
@@ -136,7 +163,7 @@ class RobotCarDrive:
         motion = (self.geodetic, headings, stamps.astype(np.float64), np.array([float(self.raw)]))
         return Traverse(
             name=self._name,
-            frames=ImageFiles(paths, size, self.crop, self._pattern),
+            frames=ImageFiles(paths, size, crop=self.crop, bayer=self._pattern),
             positions=positions,
             headings=headings,
             times=(stamps - stamps[0]) / 1e6,
@@ -155,7 +182,7 @@ class RobotCarDrive:
     def _name(self) -> str:
         left_out = len(self._asked) - int(self._fixes.cover(self._asked).sum())
         said = f"; {left_out} images left out, not between two good fixes" if left_out else ""
-        return f"RobotCar {self.run.sequence}, {self.camera}, {len(self._stamps)} frames{said}"
+        return f"RobotCar {self.stretch.drive}, {self.camera}, {len(self._stamps)} frames{said}"
 
     @cached_property
     def _fixes(self) -> Fixes:
@@ -166,14 +193,16 @@ class RobotCarDrive:
         """The timestamps of the camera's images, microseconds."""
         lines = read_text(self.timestamps).splitlines()
         stamps = [_stamp(line, f"{self.timestamps}, line {number}") for number, line in enumerate(lines, 1)]
-        check_increasing(np.array(stamps, np.float64), lambda row: f"{self.timestamps}, line {row + 1}")
+        check_increasing(np.array(stamps) / 1e6, lambda row: f"{self.timestamps}, line {row + 1}")
         return np.array(stamps, np.int64)
 
     @cached_property
     def _asked(self) -> Int64[np.ndarray, " asked"]:
         """Each so manieth timestamp of the run."""
-        inside = (self._listed >= self.run.first) & (self._listed <= self.run.last)
-        return self._listed[inside][:: self.thinning.every]
+        first, last = self.stretch.first, self.stretch.last
+        start = 0 if first is None else int(np.searchsorted(self._listed, first))
+        end = None if last is None else int(np.searchsorted(self._listed, last, side="right"))
+        return self._listed[start:end][:: self.thinning.every]
 
     @cached_property
     def _stamps(self) -> Int64[np.ndarray, " n"]:

@@ -115,7 +115,7 @@ class UtmImages:
         turned, seen_by = self._headings(positions, headings), camera(size[0])
         return Traverse(
             name=f"{self.folder}, by {self.order}",
-            frames=ImageFiles(self.images, size if self.one_size else None, self.crop),
+            frames=ImageFiles(self.images, size if self.one_size else None, crop=self.crop),
             positions=positions,
             headings=turned,
             times=np.arange(float(len(positions))),

@@ -13,6 +13,7 @@ from dataclasses import replace
 
 import pandas as pd
 
+from vprbench.columns import length_unit
 from vprbench.errors import ConfigError, DataError, nearest
 from vprbench.metrics import METRICS
 from vprbench.tables.model import NAN, Entry, Table, unit
@@ -49,7 +50,7 @@ def make_table(
     _check_request(results, rows, columns, metric)
     if columns == "agent":
         return make_table(results, rows=columns, columns=rows, metric=metric).transposed()
-    return _pivot(_tidy(results, rows, columns, metric), rows, columns, metric, _length(results))
+    return _pivot(_tidy(results, rows, columns, metric), rows, columns, metric, length_unit(results))
 
 
 def _pivot(cells: pd.DataFrame, rows: str, columns: str, metric: str, length: str) -> Table:
@@ -125,12 +126,6 @@ def _keys(axis: pd.Series) -> list[str] | list[float]:
     """What stands along an axis: numbers in order, names as they first come."""
     keys = axis.unique().tolist()
     return sorted(map(float, keys)) if pd.api.types.is_numeric_dtype(axis) else keys
-
-
-def _length(results: pd.DataFrame) -> str:
-    """What the lengths in the results are in; a cell that failed does not say."""
-    units = sorted(set(results.get("unit", pd.Series(dtype=str))) - {""}, reverse=True)
-    return " or ".join(units) or "m"
 
 
 def _head(axis: str, key: str | float, length: str) -> str:

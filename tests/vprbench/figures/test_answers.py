@@ -82,6 +82,11 @@ def test_half_of_the_answers_lie_within_the_median_error(runs: list[Run]) -> Non
                 assert share[error <= metres][-1] == pytest.approx(expected)
 
 
+def test_errors_of_a_route_in_frames_are_in_frames(runs: list[Run]) -> None:
+    assert "error, m" in texts(error_distribution(runs, COLOURS))
+    assert "error, frames" in texts(error_distribution(runs, COLOURS, "frames"))
+
+
 def test_a_line_is_the_mean_over_seeds_and_its_band_holds_their_intervals() -> None:
     rows = pd.DataFrame(
         [

@@ -87,6 +87,12 @@ def test_groups_of_distances_rise_and_a_missing_agent_leaves_a_gap() -> None:
     assert [text.get_text() for text in legend.get_texts()] == ["zeta", r"\$a\$", " _b"]
 
 
+def test_distances_are_in_the_unit_of_the_rows() -> None:
+    rows = ROWS.assign(unit="frames")
+    assert score_bars(ROWS, by="sampling_distance_m").axes[0].get_xlabel() == "sampling distance, m"
+    assert score_bars(rows, by="sampling_distance_m").axes[0].get_xlabel() == "sampling distance, frames"
+
+
 def test_groups_of_routes_keep_the_order_of_the_rows() -> None:
     (axes,) = score_bars(ROWS, by="route").axes
     assert names(axes) == ["far", "near"]

@@ -15,6 +15,7 @@ from vprbench.env import RouteEnv
 from vprbench.episode import play
 from vprbench.errors import ConfigError, DataError
 from vprbench.fitted import fitted_agent
+from vprbench.frequency.filling import Filling
 from vprbench.runner import run
 from vprbench.sweep import Cell, Job
 
@@ -83,6 +84,12 @@ def test_the_environment_has_no_heading_to_sense(routes: Path) -> None:
     observation, _ = env.reset()
     assert set(observation) == {"frame", "camera", "gps"}
     assert observation["gps"].tolist() == [0, 0]
+
+
+def test_a_memory_filled_from_such_a_route_has_no_headings(routes: Path) -> None:
+    filling = Filling(load_route("walk", routes=routes), 25)
+    assert {len(filling[index].observation) for index in (0, 21, 60)} == {3}
+    assert "heading" not in filling[0].observation
 
 
 def test_frame_by_frame_the_same_truth_is_told(routes: Path) -> None:

@@ -205,8 +205,8 @@ def test_a_bad_list_of_images_is_met_by_its_line(root: Path, line: str, fault: s
 @pytest.mark.parametrize(
     ("old", "new", "fault"),
     [
-        ('"2015-02-03"', '"2015-02-03:9-3"', r"\.test: '2015-02-03:9-3' ends before it has two frames"),
-        ('"2015-02-03"', '"a/b"', r"\.test: 'a/b' is not \"sequence:first-last\""),
+        ('"2015-02-03"', '"2015-02-03:9-3"', r"\.test: '2015-02-03:9-3' ends before it begins"),
+        ('"2015-02-03"', '"a/b"', r"\.test: 'a/b' is neither \"drive\" nor \"drive:first-last\""),
         ("fx =", 'view = "stereo/center", fx =', r"\.camera\.view: unknown key"),
     ],
 )

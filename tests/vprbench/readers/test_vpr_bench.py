@@ -13,6 +13,8 @@ import pytest
 
 from vprbench.catalogue import catalogue, load_route
 from vprbench.errors import DataError
+from vprbench.fitted import fitted_agent
+from vprbench.place_fields import record_fields
 from vprbench.readers.safe_npy import read_objects
 from vprbench.readers.vpr_bench import read_matches
 from vprbench.runner import run
@@ -61,6 +63,13 @@ def test_a_row_is_judged_by_the_lists(routes: Path) -> None:
     assert outcome.trace.error_m[:4].tolist() == [0, 0, 0, 0]
     assert np.isnan(outcome.trace.error_m[4])
     assert outcome.trace.truth[4] == -1
+
+
+def test_place_fields_need_no_truth(routes: Path) -> None:
+    route = load_route("bench", routes=routes)
+    fields = record_fields(route, fitted_agent({"localizer": "cohog"}, 0, ()), 3.0, agent="CoHOG")
+    assert fields.places.tolist() == [0, 3, 6, 9]
+    assert fields.winners[fields.places].tolist() == [0, 1, 2, 3]
 
 
 def test_what_is_not_there_is_named(routes: Path) -> None:

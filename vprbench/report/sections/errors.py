@@ -1,7 +1,8 @@
-"""How far, in metres, the answers lie from the truth."""
+"""How far, in metres or frames, the answers lie from the truth."""
 
 from __future__ import annotations
 
+from vprbench.columns import length_unit
 from vprbench.figures.curves import error_distribution
 from vprbench.report.markup import paragraph
 from vprbench.report.material import Material
@@ -18,11 +19,13 @@ def errors_in_metres(material: Material) -> Section:
     table = Sheet("error-median-by-distance", make_table(material.rows, metric="error_median_m"))
     if not material.runs:
         return Section(TITLE, paragraph("The curves are left out: no trace could be read."), (table,))
+    unit = length_unit(material.rows)
+    so_many = {"m": "metres"}.get(unit, unit)
     caption = (
-        "Share of all queries whose answered place was learned within so many metres of the query (logarithmic; "
-        "shorter errors are drawn at 0.1 m). A line that ends below 1 belongs to an agent that did not always answer. "
-        "Dotted: half the sampling distance, which the error of a right answer may well reach."
+        f"Share of all queries whose answered place was learned within so many {so_many} of the query (logarithmic; "
+        f"shorter errors are drawn at 0.1 {unit}). A line that ends below 1 belongs to an agent that did not always "
+        "answer. Dotted: half the sampling distance, which the error of a right answer may well reach."
     )
-    alt = f"Cumulative distributions of the error in metres of {', '.join(material.agents)}."
-    figure = error_distribution(material.runs, material.colours)
+    alt = f"Cumulative distributions of the error in {so_many} of {', '.join(material.agents)}."
+    figure = error_distribution(material.runs, material.colours, unit)
     return Section(TITLE, tables=(table,), figures=(Drawing("error-metres", figure, alt, caption),))
