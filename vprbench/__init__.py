@@ -4,20 +4,23 @@ Importing it registers one environment for each route of the catalogue, for exam
 `vprbench/Route-v0`, which takes any route as its argument `route`.
 """
 
-from gymnasium import register, registry
+import tomllib
+from importlib import resources
+from types import ModuleType
 
-from vprbench.catalogue import catalogue
+from vprbench.after_import import after_import
 
 __all__: list[str] = []
 
 
-def _register() -> None:
+def _register(gymnasium: ModuleType) -> None:
     """Register the environments; a second import, as a reload makes, changes nothing."""
-    entry = "vprbench.env:RouteEnv"
-    names = {f"vprbench/{name}-v0": {"route": name} for name in catalogue().names()}
+    table = tomllib.loads((resources.files(__name__) / "data" / "routes.toml").read_text(encoding="utf-8"))
+    names = {f"vprbench/{name}-v0": {"route": name} for name in table["routes"]}
     for name, options in {"vprbench/Route-v0": {}, **names}.items():
-        if name not in registry:
-            register(name, entry, kwargs=options)
+        if name not in gymnasium.registry:
+            gymnasium.register(name, "vprbench.env:RouteEnv", kwargs=options)
 
 
-_register()
+# Most commands do without Gymnasium, which takes several times as long to import as all that they need to say --help.
+after_import("gymnasium", _register)
