@@ -4,12 +4,14 @@ from __future__ import annotations
 
 import math
 from itertools import combinations
+from os.path import realpath  # Path.resolve raises where links run in a circle
 from pathlib import Path
 from typing import Annotated, Literal
 
 from pydantic import AfterValidator, BaseModel, ConfigDict, Field, ValidationInfo, model_validator
 
 from vprbench.availability import Need
+from vprbench.data_root import expanded
 from vprbench.entries.base import Entry
 from vprbench.errors import DataError
 from vprbench.readers.folder import FolderDrive
@@ -20,7 +22,7 @@ __all__ = ["FolderEntry", "OwnCamera"]
 
 
 def _beside_the_file(path: Path, info: ValidationInfo) -> Path:
-    return Path(info.context["folder"], path.expanduser()) if info.context else path
+    return Path(info.context["folder"], expanded(path)) if info.context else path
 
 
 _OwnPath = Annotated[Path, AfterValidator(_beside_the_file)]
@@ -80,7 +82,7 @@ class FolderEntry(Entry):
         """The route; with latitude and longitude, in the local plane about the learn drive's first fix."""
         drives = self._drives()
         for a, b in combinations(drives, 2):
-            shared = sorted({image.resolve() for image in a.images} & {image.resolve() for image in b.images})
+            shared = sorted({realpath(image) for image in a.images} & {realpath(image) for image in b.images})
             if shared:
                 more = f" and {len(shared) - 1} more" if len(shared) > 1 else ""
                 raise DataError(f"{a.path} and {b.path} share the image {shared[0]}{more}; leave them out of one")

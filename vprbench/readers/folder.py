@@ -3,7 +3,7 @@
 The CSV is encoded in UTF-8 and has a header. Its columns, in any order:
 
 - file: the image (PNG or JPEG), relative to the CSV
-- time: seconds, increasing
+- time: seconds from 0 up, increasing
 - east, north: metres, of one origin for all drives of a route; or latitude, longitude: degrees (WGS 84)
 - heading_deg: degrees clockwise from north; without it the heading is the direction of the positions
 """
@@ -23,15 +23,14 @@ from vprbench.errors import DataError
 from vprbench.geodesy import COURSE_WINDOW, check_geodetic, course, local_positions, wrap
 from vprbench.readers.csv_table import CsvTable, read_csv
 from vprbench.readers.images import ImageFiles, content_hash, image_size
+from vprbench.readers.motion import Motion
 from vprbench.readers.number_files import check_increasing
+from vprbench.readers.speed import check_speed
 from vprbench.route import Camera, Traverse
 
 __all__ = ["FolderDrive"]
 
 _LOCAL, _GEODETIC = ("east", "north"), ("latitude", "longitude")
-
-# Faster than any road vehicle: such a step is a lost fix (often 0, 0) or a wrong unit. Our choice.
-_FASTEST = 100.0
 
 
 @dataclass(frozen=True)
@@ -50,6 +49,8 @@ class FolderDrive:
         names = self._table.columns["file"]
         rows: dict[str, int] = {}
         for row, name in enumerate(names):
+            if not name:
+                raise DataError(f"{self._table.where(row)}: no image; give its file")
             if rows.setdefault(name, row) != row:
                 raise DataError(f"{self._table.where(row)}: the image of another line too, {name}")
         return tuple(self.path.parent / name for name in names)
@@ -71,6 +72,12 @@ class FolderDrive:
         files = {frame: (image,) for frame, image in enumerate(self.images)}
         return need_of(str(self.path), self.path.parent, files, (), remedy)
 
+    def motion(self, origin: Float64[np.ndarray, "2"] | None) -> Motion:
+        """Where the vehicle was at each frame; the origin is that of `traverse`."""
+        positions = self._positions(origin)
+        times = self._times(positions)
+        return Motion(positions, self._headings(positions), times)
+
     def traverse(self, camera: Callable[[int], Camera], origin: Float64[np.ndarray, "2"] | None) -> Traverse:
         """The drive.
 
@@ -78,8 +85,7 @@ class FolderDrive:
             camera: of the reduced frames, given the width of the images, pixels.
             origin: latitude and longitude of the local plane's origin, where the CSV has these.
         """
-        positions = self._positions(origin)
-        times, headings = self._times(positions), self._headings(positions)
+        positions, headings, times = self.motion(origin)
         size = image_size(self.images[0])
         seen_by = camera(size[0])
         parts = (positions, times, headings, np.array([seen_by.fx, seen_by.cx]))
@@ -129,11 +135,7 @@ class FolderDrive:
         """Seconds; a step between frames that no road vehicle makes is refused."""
         times = self._table.numbers("time")
         check_increasing(times, self._table.where)
-        speeds = np.linalg.norm(np.diff(positions, axis=0), axis=1) / np.diff(times)
-        bad = np.flatnonzero(speeds > _FASTEST)
-        if bad.size:
-            where, speed = self._table.where(int(bad[0]) + 1), speeds[bad[0]]
-            raise DataError(f"{where}: {speed:.0f} m/s since the frame before; check the position and the time (s)")
+        check_speed(positions, times, self._table.where)
         return times
 
     def _headings(self, positions: Float64[np.ndarray, "n 2"]) -> Float64[np.ndarray, " n"]:
