@@ -1,0 +1,34 @@
+"""The commands about data: `vprbench data check` and `vprbench data revisits`."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Annotated
+
+import typer
+
+from vprbench.cli.arguments import Data, Routes
+
+__all__ = ["check", "data"]
+
+data = typer.Typer(no_args_is_help=True, help="Check the data of routes, and find roads driven twice.")
+
+
+@data.command(epilog="Example: vprbench data check KITTI-K0-2 --data ~/kitti --figures")
+def check(
+    names: Annotated[
+        list[str] | None, typer.Argument(metavar="ROUTE...", help="Routes; by default all of the --routes file.")
+    ] = None,
+    data: Data = None,
+    routes: Routes = None,
+    out: Annotated[Path, typer.Option(help="Folder of the figures.")] = Path("runs"),
+    figures: Annotated[bool, typer.Option("--figures", help="Draw a map (needs the figures extra).")] = False,
+    format: Annotated[str, typer.Option(help="terminal or json.")] = "terminal",
+) -> None:
+    """Check the data of routes: frames, poses, times, duplicates, how the drives lie, training beside the road.
+
+    Exit code 1 if the data of a route cannot be used as they are; warnings do not count.
+    """
+    from vprbench.cli.data_checking import DataCheck, data_check_command
+
+    raise typer.Exit(data_check_command(DataCheck(names or [], data, routes, out, figures, format)))
