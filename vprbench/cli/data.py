@@ -9,7 +9,7 @@ import typer
 
 from vprbench.cli.arguments import Data, Routes
 
-__all__ = ["check", "data"]
+__all__ = ["check", "data", "revisits"]
 
 data = typer.Typer(no_args_is_help=True, help="Check the data of routes, and find roads driven twice.")
 
@@ -32,3 +32,22 @@ def check(
     from vprbench.cli.data_checking import DataCheck, data_check_command
 
     raise typer.Exit(data_check_command(DataCheck(names or [], data, routes, out, figures, format)))
+
+
+@data.command(epilog="Example: vprbench data revisits 00 --data ~/kitti > my.toml")
+def revisits(
+    recording: Annotated[
+        str,
+        typer.Argument(help="A KITTI sequence (00), a raw drive (2011_10_03_drive_0027), or a drive's CSV or folder."),
+    ],
+    data: Data = None,
+    direction: Annotated[str, typer.Option(help="Of the second drive: same, reverse or both.")] = "same",
+    length: Annotated[float, typer.Option(min=1, help="Least metres of road driven twice.")] = 50.0,
+    field_of_view: Annotated[
+        float, typer.Option(min=1, max=179, help="Of the camera of a drive of your own, horizontal, degrees.")
+    ] = 82.0,
+) -> None:
+    """Find roads that a recording drives twice, and propose routes there: a TOML file for --routes, on stdout."""
+    from vprbench.cli.revisiting import revisits_command
+
+    revisits_command(recording, data, direction, length, field_of_view)

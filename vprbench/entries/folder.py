@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+import re
 from itertools import combinations
 from os.path import realpath  # Path.resolve raises where links run in a circle
 from pathlib import Path
@@ -13,12 +14,12 @@ from pydantic import AfterValidator, BaseModel, ConfigDict, Field, ValidationInf
 from vprbench.availability import Need
 from vprbench.data_root import expanded
 from vprbench.entries.base import Entry
-from vprbench.errors import DataError
+from vprbench.errors import ConfigError, DataError
 from vprbench.readers.folder import FolderDrive
 from vprbench.readers.images import scaled_camera
 from vprbench.route import Camera, Route
 
-__all__ = ["FolderEntry", "OwnCamera"]
+__all__ = ["FolderEntry", "OwnCamera", "folder_drive"]
 
 
 def _beside_the_file(path: Path, info: ValidationInfo) -> Path:
@@ -62,7 +63,7 @@ class FolderEntry(Entry):
     """A route of a user's own, each drive a CSV beside its images; paths are relative to the catalogue file.
 
     Attributes:
-        learn: the CSV of the learn drive, or the folder that holds its `frames.csv`.
+        learn: the CSV of the learn drive, or the folder that holds its `frames.csv`; ":first-last" after it for a part.
         test: that of the test drive.
         training: those of drives off the route.
         camera: of all drives.
@@ -85,11 +86,20 @@ class FolderEntry(Entry):
             shared = sorted({realpath(image) for image in a.images} & {realpath(image) for image in b.images})
             if shared:
                 more = f" and {len(shared) - 1} more" if len(shared) > 1 else ""
-                raise DataError(f"{a.path} and {b.path} share the image {shared[0]}{more}; leave them out of one")
+                raise DataError(f"{a.name} and {b.name} share the image {shared[0]}{more}; leave them out of one")
         origin = None if drives[0].geodetic is None else drives[0].geodetic[0]
         learn, test, *training = (drive.traverse(self.camera.reduced, origin) for drive in drives)
         return Route(name, learn, test, tuple(training), self.environment, self.split)
 
     def _drives(self) -> tuple[FolderDrive, ...]:
-        paths = (self.learn, self.test, *self.training)
-        return tuple(FolderDrive(path if path.suffix == ".csv" else path / "frames.csv") for path in paths)
+        return tuple(folder_drive(path) for path in (self.learn, self.test, *self.training))
+
+
+def folder_drive(path: Path) -> FolderDrive:
+    """The drive that a path names: a CSV or the folder that holds its `frames.csv`, and perhaps which frames."""
+    # A folder may have a name like that, too.
+    part = None if path.exists() else re.fullmatch(r"(.+):(\d{1,6})-(\d{1,6})", str(path))
+    whole, frames = (Path(part[1]), (int(part[2]), int(part[3]))) if part else (path, None)
+    if frames and frames[0] >= frames[1]:
+        raise ConfigError(f"{path} ends before it has two frames")
+    return FolderDrive(whole if whole.suffix == ".csv" else whole / "frames.csv", frames)

@@ -35,6 +35,13 @@ class CsvTable:
         """The file and line of a row, for messages."""
         return f"{self.path}, line {self.lines[row]}"
 
+    def part(self, first: int, last: int) -> CsvTable:
+        """The rows from one to another, both counted from 0 and included; DataError where there are fewer."""
+        if last >= len(self.lines):
+            raise DataError(f"{self.path}: {len(self.lines)} rows, too few for frame {last}")
+        rows = slice(first, last + 1)
+        return CsvTable(self.path, {name: words[rows] for name, words in self.columns.items()}, self.lines[rows])
+
     def numbers(self, name: str) -> Float64[np.ndarray, " rows"]:
         """A column as finite numbers; DataError names the first that is none."""
         return np.array([self._number(name, row) for row in range(len(self.lines))])

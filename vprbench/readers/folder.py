@@ -35,13 +35,20 @@ _LOCAL, _GEODETIC = ("east", "north"), ("latitude", "longitude")
 
 @dataclass(frozen=True)
 class FolderDrive:
-    """One drive of a user's own.
+    """One drive of a user's own, or a part of it.
 
     Attributes:
         path: the CSV.
+        frames: the first and the last frame of the part, counted from 0; None for all.
     """
 
     path: Path
+    frames: tuple[int, int] | None = None
+
+    @property
+    def name(self) -> str:
+        """The CSV, and which of its frames."""
+        return str(self.path) if self.frames is None else "{}, frames {}-{}".format(self.path, *self.frames)
 
     @cached_property
     def images(self) -> tuple[Path, ...]:
@@ -69,7 +76,7 @@ class FolderDrive:
         remedy = f"Put each image where {self.path} says, relative to that file."
         if not self.path.is_file():
             return Need(str(self.path), self.path.parent, (), (), (self.path,), remedy)
-        files = {frame: (image,) for frame, image in enumerate(self.images)}
+        files = {frame: (image,) for frame, image in enumerate(self.images, self._first)}
         return need_of(str(self.path), self.path.parent, files, (), remedy)
 
     def motion(self, origin: Float64[np.ndarray, "2"] | None) -> Motion:
@@ -90,13 +97,13 @@ class FolderDrive:
         seen_by = camera(size[0])
         parts = (positions, times, headings, np.array([seen_by.fx, seen_by.cx]))
         return Traverse(
-            name=str(self.path) if self._has_heading else f"{self.path} (headings from its positions)",
+            name=self.name if self._has_heading else f"{self.name} (headings from its positions)",
             frames=ImageFiles(self.images, size),
             positions=positions,
             headings=headings,
             times=times,
             camera=seen_by,
-            indices=np.arange(len(positions)),
+            indices=self._first + np.arange(len(positions)),
             checksum=content_hash(self.images, *parts),
             geodetic=self.geodetic,
         )
@@ -114,7 +121,11 @@ class FolderDrive:
             raise DataError(f"{self.path}, line 1: {fault}; the columns are file, time, {pair}, and heading_deg")
         if len(table.lines) < 2:
             raise DataError(f"{self.path}: {len(table.lines)} frames, and a drive has at least two")
-        return table
+        return table if self.frames is None else table.part(*self.frames)
+
+    @property
+    def _first(self) -> int:
+        return 0 if self.frames is None else self.frames[0]
 
     @property
     def _has_heading(self) -> bool:

@@ -31,6 +31,9 @@ OdometryCamera = Literal["image_0", "image_2"]
 # How far a rotation times its transpose may be from unity; KITTI's are nearer than 1e-5. Our choice.
 _SKEW = 0.01
 
+# Frames a second, nominal.
+_RATE = 10.0
+
 _REMEDY = (
     "Unzip the KITTI odometry benchmark's {images}, calibration files and ground truth poses "
     "(https://www.cvlibs.net/datasets/kitti/eval_odometry.php) there, or say where they are with --data or "
@@ -124,19 +127,21 @@ def filmed(
     )
 
 
-def read_motion(poses: Path, times: Path) -> Motion:
+def read_motion(poses: Path, times: Path | None) -> Motion:
     """A sequence's motion on the ground plane (x, z) of camera 0, from its pose and time files.
 
     Positions are (P[0,3], P[2,3]) and headings atan2(P[0,2], P[2,2]) of each 3x4 pose P: with x as east
-    and z as north, clockwise from north.
+    and z as north, clockwise from north. Without a time file, frames are taken to come ten a second.
     """
     matrices = read_numbers(poses, 12).reshape(-1, 3, 4)
     _check_rotations(matrices[:, :, :3], poses)
+    headings = np.arctan2(matrices[:, 0, 2], matrices[:, 2, 2])
+    if times is None:
+        return Motion(matrices[:, [0, 2], 3], headings, np.arange(len(matrices)) / _RATE)
     seconds = read_numbers(times, 1)[:, 0]
     if len(seconds) != len(matrices):
         raise DataError(f"{times}: {len(seconds)} times for the {len(matrices)} poses in {poses}")
     check_increasing(seconds, lambda row: f"{times}, line {row + 1}")
-    headings = np.arctan2(matrices[:, 0, 2], matrices[:, 2, 2])
     return Motion(matrices[:, [0, 2], 3], headings, seconds)
 
 

@@ -82,11 +82,23 @@ class RawDrive:
         rows = [self._read_fix(frame) for frame in frames]
         return np.concatenate(rows)[:, [0, 1, _YAW]]
 
+    def whole(self) -> FrameRun:
+        """All frames that have a fix; DataError where there are none."""
+        numbers = sorted(int(path.stem) for path in (self.folder / "oxts" / "data").glob("[0-9]*.txt"))
+        if len(numbers) < 2:
+            raise DataError(f"{self.folder / 'oxts' / 'data'}: no fixes of a drive; {self.need([0, 1]).remedy}")
+        return FrameRun(self.name, numbers[0], numbers[-1])
+
+    def motion(self, run: FrameRun) -> Motion:
+        """Where the vehicle was along a run of frames, in the local plane about its first fix."""
+        fixes = self.fixes(run.frames)
+        return _motion(fixes, self._times(run), fixes[0, :2])
+
     def traverse(self, run: FrameRun, origin: Float64[np.ndarray, "2"]) -> Traverse:
         """The drive along a run of frames, in the local plane about `origin` (latitude, longitude)."""
         fixes = self.fixes(run.frames)
         geodetic, times = fixes[:, :2], self._times(run)
-        motion = Motion(local_positions(geodetic, origin), compass_heading(fixes[:, 2]), times)
+        motion = _motion(fixes, times, origin)
         projection = read_projection(self.calibration, f"P_rect_{self.camera[-2:]}")
         paths = tuple(self._image(i) for i in run.frames)
         colour = self.camera in ("image_02", "image_03")
@@ -123,6 +135,12 @@ class RawDrive:
 
     def _fix(self, frame: int) -> Path:
         return self.folder / "oxts" / "data" / f"{frame:010d}.txt"
+
+
+def _motion(
+    fixes: Float64[np.ndarray, "n 3"], times: Float64[np.ndarray, " n"], origin: Float64[np.ndarray, "2"]
+) -> Motion:
+    return Motion(local_positions(fixes[:, :2], origin), compass_heading(fixes[:, 2]), times)
 
 
 def raw_run(run: FrameRun) -> FrameRun:
