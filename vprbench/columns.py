@@ -6,6 +6,7 @@ import pandas as pd
 
 from vprbench.bootstrap import INTERVAL_METRICS
 from vprbench.metrics import METRICS
+from vprbench.readers.number_files import LARGEST
 
 __all__ = ["COLUMNS", "IMPLIED", "length_unit", "typed"]
 
@@ -70,4 +71,15 @@ def _column(values: pd.Series, kind: str) -> pd.Series:
     """One column of its type; the empty text of a CSV is no number."""
     if kind == "str":
         return values.fillna("").astype(str)
-    return pd.to_numeric(values.replace("", None)).astype("float64" if kind == "float64" else "Int64")
+    given = values.replace("", None)
+    try:
+        numbers = pd.to_numeric(given, errors="coerce")
+    except TypeError as error:
+        raise ValueError(f"{values.name} holds something else than numbers") from error
+    size = numbers.astype("float64").abs()
+    fit = size <= LARGEST if kind == "float64" else (size < 2**63) & (size % 1 == 0)
+    bad = given.notna() & ~fit
+    if bad.any():
+        row, what = int(bad.to_numpy().argmax()), "number" if kind == "float64" else "whole number"
+        raise ValueError(f"row {row + 1}: {values.name} is {given.iloc[row]!r}, not a {what}")
+    return numbers.astype("float64" if kind == "float64" else "Int64")

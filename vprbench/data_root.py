@@ -7,9 +7,9 @@ from pathlib import Path
 
 import platformdirs
 
-from vprbench.errors import DataError
+from vprbench.errors import ConfigError, DataError
 
-__all__ = ["VARIABLE", "data_root"]
+__all__ = ["VARIABLE", "data_root", "expanded"]
 
 VARIABLE = "VPRBENCH_DATA"
 
@@ -22,8 +22,16 @@ def data_root(given: Path | str | None = None, *, there: bool = True) -> Path:
     named = given or os.environ.get(VARIABLE)
     if not named:
         return platformdirs.user_data_path("vprbench")
-    root = Path(named).expanduser().absolute()
+    root = expanded(Path(named)).absolute()
     if there and not root.is_dir():
         source = "--data" if given else VARIABLE
         raise DataError(f"{source} names {root}, which is not a folder: name the one that holds the data sets")
     return root
+
+
+def expanded(path: Path) -> Path:
+    """The path with ~ written out; ConfigError where it names a user who has no home folder here."""
+    try:
+        return path.expanduser()
+    except RuntimeError as error:
+        raise ConfigError(f"{path}: there is no such user's folder") from error

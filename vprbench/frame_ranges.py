@@ -8,6 +8,9 @@ from dataclasses import dataclass
 
 __all__ = ["FrameRun", "format_ranges"]
 
+# A day at 10 frames a second, and what six digits hold; a slip of the key must not fill the memory. Our choice.
+_LAST = 999_999
+
 
 def format_ranges(frames: Iterable[int]) -> str:
     """Frame numbers with every run of neighbours written as first-last: "3, 5-8"."""
@@ -37,12 +40,14 @@ class FrameRun:
     @classmethod
     def parse(cls, text: str) -> FrameRun:
         """Read "sequence:first-last"; ValueError where it is not that."""
-        match = re.fullmatch(r"([\w.-]+):(\d+)-(\d+)", text, re.ASCII)
+        match = re.fullmatch(r"([\w.-]+):(\d{1,12})-(\d{1,12})", text, re.ASCII)
         if match is None:
             raise ValueError(f'{text!r} is not "sequence:first-last", for example "00:113-205"')
         run = cls(match[1], int(match[2]), int(match[3]))
         if run.first >= run.last:
             raise ValueError(f"{text!r} ends before it has two frames")
+        if run.last > _LAST:
+            raise ValueError(f"{text!r} goes on after frame {_LAST}, the last that there can be")
         return run
 
     def __str__(self) -> str:

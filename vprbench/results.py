@@ -23,6 +23,7 @@ from filelock import FileLock, Timeout
 from vprbench.atomic import replacing
 from vprbench.columns import COLUMNS, IMPLIED, typed
 from vprbench.errors import ConfigError, DataError
+from vprbench.readers.csv_table import check_widths, read_rows
 from vprbench.runner import Outcome
 from vprbench.sweep import Cell
 from vprbench.trace import Trace
@@ -160,16 +161,33 @@ def read_table(path: Path) -> pd.DataFrame:
     Raises:
         DataError: the file is missing, damaged or no result table.
     """
+    if not path.exists():
+        raise DataError(f"{path}: not readable as a result table: there is no such file; run its sweep first")
     try:
         table = pd.read_parquet(path) if path.suffix == ".parquet" else _read_csv(path)
         missing = [name for name in COLUMNS if name not in table.columns and name not in IMPLIED]
         if missing:
             raise ValueError(f"it has no column {missing[0]!r} (an older version's table is measured anew elsewhere)")
-        return typed(table)
+        rows = typed(table)
+        _check_identity(rows)
+        return rows
     except (OSError, ValueError) as error:
-        raise DataError(f"{path}: not readable as a result table: {error}") from error
+        reason = (error.strerror if isinstance(error, OSError) else None) or error
+        raise DataError(f"{path}: not readable as a result table: {reason}") from error
 
 
 def _read_csv(path: Path) -> pd.DataFrame:
     """The CSV as text: nothing in it is taken for a number or for nothing by how it looks."""
-    return pd.read_csv(path, dtype=str, keep_default_na=False)
+    rows = read_rows(path)
+    check_widths(path, rows)
+    (_, header), *body = rows
+    return pd.DataFrame([words for _, words in body], columns=header, dtype=str)
+
+
+def _check_identity(rows: pd.DataFrame) -> None:
+    """Refuse a row whose cell is not of its own route, agent and seed: damaged, or edited by hand."""
+    named = rows[["cell", "route", "agent", "seed", "sampling_distance_m"]].itertuples(index=False)
+    for number, (cell, route, agent, seed, distance) in enumerate(named, 1):
+        start, _, *end = [*cell.split("/", 2), "", ""][:3]
+        if start != route or end != [f"{agent}/s{seed}"] or not distance > 0:
+            raise ValueError(f"row {number}: cell {cell!r} is not of its route, distance, agent and seed")

@@ -1,16 +1,20 @@
-"""Revisits: where a recording drives a road again in the same direction, found from its poses alone."""
+"""Revisits: where a recording drives a road again, the same way or back, found from its poses alone."""
 
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator
 from dataclasses import dataclass
+from typing import Literal
 
 import numpy as np
 from jaxtyping import Bool, Float64, Int64
 
 from vprbench.geodesy import wrap
 
-__all__ = ["RevisitRule", "RoadTwice", "apart", "find_revisits", "first_runs"]
+__all__ = ["Direction", "RevisitRule", "RoadTwice", "apart", "find_revisits", "first_runs"]
+
+
+Direction = Literal["same", "reverse"]
 
 
 @dataclass(frozen=True)
@@ -32,10 +36,11 @@ class RevisitRule:
 
     Attributes:
         radius: largest distance of the second drive from the first, metres.
-        turn: largest difference of their headings, radians.
+        turn: largest difference of their headings, radians; of the reverse direction, from half a turn.
         pause: least time between them, seconds.
         length: least length of the second drive, metres.
         jump: how far the partner may move on between two frames of the second drive, metres of road.
+        direction: of the second drive: the same, or the reverse, in which partners move back along the first.
     """
 
     radius: float = 5.0
@@ -43,6 +48,12 @@ class RevisitRule:
     pause: float = 30.0
     length: float = 50.0
     jump: float = 10.0
+    direction: Direction = "same"
+
+    @property
+    def sign(self) -> int:
+        """1 where partners move on along the first drive, -1 where they move back."""
+        return 1 if self.direction == "same" else -1
 
 
 def find_revisits(
@@ -55,8 +66,9 @@ def find_revisits(
     """Every revisit in a recording, in the order of its second drives.
 
     A frame's partner is the nearest of the earlier frames that the rule lets it have. A revisit is a longest
-    run of frames whose partners move on along the first drive, without a step back and without a jump, and lie
-    before the run. It begins and ends up to `radius` outside the first drive.
+    run of frames whose partners move on along the first drive (of the reverse direction: move back), without a
+    step the other way and without a jump, and lie before the run. It begins and ends up to `radius` outside the
+    first drive.
 
     Args:
         positions: (n, 2) metres.
@@ -69,7 +81,7 @@ def find_revisits(
     partners = _partners(positions, headings, times, allowed, rule)
     steps = np.linalg.norm(np.diff(positions, axis=0), axis=1)
     road = np.concatenate([[0.0], np.cumsum(steps)])
-    found = [RoadTwice(_span(partners[run]), _span(run)) for run in _steady(partners, road, rule.jump)]
+    found = [RoadTwice(_span(partners[run][:: rule.sign]), _span(run)) for run in _steady(partners, road, rule)]
     return [twice for twice in found if road[twice.test[-1]] - road[twice.test[0]] >= rule.length]
 
 
@@ -105,7 +117,8 @@ def _partners(
     for frame in np.flatnonzero(allowed & (earlier > 0)):
         before = slice(0, earlier[frame])
         gaps = np.linalg.norm(positions[before] - positions[frame], axis=1)
-        alike = np.abs(wrap(headings[before] - headings[frame])) < rule.turn
+        ahead = headings[frame] if rule.direction == "same" else headings[frame] + np.pi
+        alike = np.abs(wrap(headings[before] - ahead)) < rule.turn
         gaps[~(alike & allowed[before])] = np.inf
         nearest = int(gaps.argmin())
         if gaps[nearest] <= rule.radius:
@@ -114,14 +127,15 @@ def _partners(
 
 
 def _steady(
-    partners: Int64[np.ndarray, " n"], road: Float64[np.ndarray, " n"], jump: float
+    partners: Int64[np.ndarray, " n"], road: Float64[np.ndarray, " n"], rule: RevisitRule
 ) -> list[Int64[np.ndarray, " run"]]:
     """Longest runs of frames whose partners move on steadily."""
     frames = np.flatnonzero(partners >= 0)
-    onward = np.diff(road[partners[frames]])
-    breaks = (np.diff(frames) > 1) | (np.diff(partners[frames]) < 0) | (onward > jump)
+    onward = rule.sign * np.diff(road[partners[frames]])
+    breaks = (np.diff(frames) > 1) | (rule.sign * np.diff(partners[frames]) < 0) | (onward > rule.jump)
     runs = np.split(frames, np.flatnonzero(breaks) + 1) if frames.size else []
-    return [part for run in runs for part in _unshared(run, partners)]
+    # On the way back the first partner is the last frame learned, and lies before the run by the pause.
+    return [part for run in runs for part in (_unshared(run, partners) if rule.sign > 0 else [run])]
 
 
 def _unshared(

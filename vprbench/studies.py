@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import tomllib
 from collections.abc import Mapping, Sequence
 from importlib.resources import files
 from pathlib import Path
@@ -12,6 +11,7 @@ from pydantic import BaseModel, ConfigDict, Field, ValidationError
 
 from vprbench.errors import ConfigError, nearest
 from vprbench.presence import shortfalls
+from vprbench.toml_files import read_toml
 
 __all__ = [
     "FitStudy",
@@ -155,9 +155,7 @@ def load_studies(path: Path | None = None) -> list[Study]:
     """
     source = path or Path(str(files("vprbench") / "data" / "studies.toml"))
     try:
-        found = _File.model_validate(tomllib.loads(source.read_text("utf-8"))).studies
-    except (OSError, UnicodeDecodeError, tomllib.TOMLDecodeError) as error:
-        raise ConfigError(f"{source}: {error}") from error
+        found = _File.model_validate(read_toml(source)).studies
     except ValidationError as error:
         fault = error.errors(include_url=False)[0]
         raise ConfigError(f"{source}: {'.'.join(map(str, fault['loc']))}: {fault['msg'].lower()}") from error

@@ -7,7 +7,6 @@ group what can share a fitted agent; `pool` runs each Job in a worker, where `ru
 
 from __future__ import annotations
 
-import tomllib
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from fnmatch import fnmatchcase
@@ -19,6 +18,7 @@ from pydantic import BaseModel, ConfigDict, Field, ValidationError, field_valida
 
 from vprbench.agents import Config, is_seeded, validate
 from vprbench.errors import ConfigError, PluginError, nearest
+from vprbench.toml_files import read_toml
 
 __all__ = ["Cell", "Job", "Sweep", "builtin_sweeps", "jobs", "load_sweep", "matching", "parse_sweep"]
 
@@ -146,10 +146,9 @@ def load_sweep(name: str) -> tuple[Path, Sweep]:
 
 def parse_sweep(path: Path) -> Sweep:
     """Read and check the TOML of a sweep, its agents included."""
+    tables = read_toml(path)
     try:
-        sweep = Sweep.model_validate(tomllib.loads(path.read_text("utf-8")))
-    except (OSError, UnicodeDecodeError, tomllib.TOMLDecodeError) as error:
-        raise ConfigError(f"{path}: {error}") from error
+        sweep = Sweep.model_validate(tables)
     except ValidationError as error:
         raise ConfigError(f"{path}: {_explain(error)}") from error
     for agent, config in sweep.agents.items():

@@ -14,6 +14,7 @@ from jaxtyping import Bool, Float64, Int64
 
 from vprbench.atomic import replacing
 from vprbench.errors import DataError, nearest
+from vprbench.readers.number_files import LARGEST
 from vprbench.types import NO_PLACE
 
 __all__ = ["Trace"]
@@ -61,8 +62,8 @@ class Trace:
         north: position of the query, local metres.
 
     Raises:
-        DataError: no rows, columns of different length or type, a confidence that is not a number or negative,
-            or a row that contradicts itself.
+        DataError: no rows, columns of different length or type, a confidence that is not a number or negative, a
+            position or distance that is none, or a row that contradicts itself.
     """
 
     frame: Int64[np.ndarray, " queries"]
@@ -82,6 +83,9 @@ class Trace:
         for name in DTYPES:
             object.__setattr__(self, name, self._typed(name))
         none = self.hypothesis == NO_PLACE
+        for name in ("east", "north", "tolerance_m", "error_m"):
+            known = np.abs(getattr(self, name)) <= LARGEST
+            self._refuse(~(known | none & (name == "error_m")), f"{name} is not a number of metres")
         self._refuse(~(np.isfinite(self.confidence) & (self.confidence >= 0)), "confidence is not a number from 0 up")
         self._refuse(none & (self.confidence > 0), "no hypothesis, but a confidence above 0")
         self._refuse(none & (self.correct | self.correct_metric), "no hypothesis, but marked right")

@@ -47,6 +47,31 @@ def test_driving_back_is_no_revisit() -> None:
     assert found(Motion(*(np.concatenate(pair) for pair in zip(there, back, strict=True)))) == []
 
 
+def test_driving_back_is_a_revisit_of_the_reverse_direction() -> None:
+    there = laps(1.0)
+    back = Motion(there.positions[::-1], wrap(there.headings[::-1] + np.pi), there.times + 100.0)
+    both = Motion(*(np.concatenate(pair) for pair in zip(there, back, strict=True)))
+    reverse = RevisitRule(direction="reverse")
+    assert found(both, rule=reverse) == [RoadTwice(range(400), range(400, 800))]
+    allowed = np.ones(800, bool)
+    allowed[100:140] = False
+    # The way back comes past the frames that are left in the other order.
+    parts = [RoadTwice(range(140, 400), range(400, 660)), RoadTwice(range(100), range(700, 800))]
+    assert found(both, allowed, RevisitRule(direction="reverse", radius=0.5)) == parts
+    assert found(laps(1.5), rule=reverse) == []
+
+
+def test_a_turn_in_the_road_is_no_way_back() -> None:
+    """Out, round, and back at once: the pause is not over before the two ways part."""
+    there = laps(0.6)
+    back = Motion(there.positions[::-1], wrap(there.headings[::-1] + np.pi), there.times + 24.0)
+    both = Motion(*(np.concatenate(pair) for pair in zip(there, back, strict=True)))
+    (twice,) = found(both, rule=RevisitRule(direction="reverse"))
+    assert twice.learn[0] == 0
+    assert twice.test[-1] == 479
+    assert both.times[twice.test[0]] - both.times[twice.learn[-1]] == pytest.approx(30.0, abs=0.2)
+
+
 def test_a_revisit_needs_its_pause_and_its_length() -> None:
     assert found(laps(1.5, speed=20.0)) == []  # a lap takes 20 s
     assert found(laps(1.1125)) == []  # frames 395-444: 49 m

@@ -15,5 +15,6 @@ def main() -> None:
     try:
         app()
     except VprbenchError as error:
-        sys.stderr.write(f"vprbench: {error}\n")
+        # Whatever a cause says, a fault is told in one line.
+        sys.stderr.write(f"vprbench: {' '.join(str(error).splitlines())}\n")
         sys.exit(error.exit_code)

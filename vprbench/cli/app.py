@@ -7,6 +7,9 @@ from typing import Annotated
 
 import typer
 
+from vprbench.cli.arguments import Data, Routes
+from vprbench.cli.data import data
+
 __all__ = [
     "app",
     "check",
@@ -33,12 +36,8 @@ app = typer.Typer(
     rich_markup_mode="rich",
     context_settings={"help_option_names": ["-h", "--help"]},
 )
+app.add_typer(data, name="data")
 
-Data = Annotated[
-    Path | None,
-    typer.Option(help="Folder that holds KITTI's dataset/. Default: $VPRBENCH_DATA, else the user data folder."),
-]
-Routes = Annotated[Path | None, typer.Option(help="TOML file with routes of your own.")]
 Cache = Annotated[
     Path | None,
     typer.Option(help="Folder that keeps fitted encoders, or none. Default: $VPRBENCH_CACHE, else the user's cache."),

@@ -43,7 +43,7 @@ class Entry(BaseModel, ABC):
 
     environment: str = ""
     split: Split = "report"
-    heading_noise_deg: Annotated[float, Field(ge=0)] = 0.0
+    heading_noise_deg: Annotated[float, Field(ge=0, le=360)] = 0.0
     heading_noise_seed: Annotated[int, Field(ge=0)] = 0
 
     @abstractmethod

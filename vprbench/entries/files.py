@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import re
-import tomllib
 from pathlib import Path
 
 from pydantic import TypeAdapter, ValidationError
@@ -11,6 +10,7 @@ from pydantic import TypeAdapter, ValidationError
 from vprbench.entries import RouteEntry
 from vprbench.entries.faults import explain
 from vprbench.errors import ConfigError, nearest
+from vprbench.toml_files import read_toml
 
 __all__ = ["read_entries"]
 
@@ -19,12 +19,7 @@ _ENTRY: TypeAdapter[RouteEntry] = TypeAdapter(RouteEntry)
 
 def read_entries(path: Path) -> dict[str, RouteEntry]:
     """The entries of a catalogue file by name; ConfigError names the file, the key and the nearest allowed name."""
-    try:
-        tables = tomllib.loads(path.read_text(encoding="utf-8"))
-    except (OSError, UnicodeDecodeError) as error:
-        raise ConfigError(f"{path}: cannot be read ({error})") from error
-    except tomllib.TOMLDecodeError as error:
-        raise ConfigError(f"{path}: not TOML: {error}") from error
+    tables = read_toml(path)
     unknown = sorted(set(tables) - {"routes"})
     if unknown:
         raise ConfigError(f"{path}: {unknown[0]}: unknown key: {nearest(unknown[0], ['routes'])}")

@@ -11,6 +11,7 @@ from typing import Annotated
 
 from pydantic import AfterValidator, BaseModel, BeforeValidator, ConfigDict, Field, ValidationInfo, model_validator
 
+from vprbench.data_root import expanded
 from vprbench.entries.base import Entry
 from vprbench.errors import DataError
 from vprbench.readers.crop import Crop
@@ -22,7 +23,7 @@ __all__ = ["ImagesEntry", "OwnCamera", "OwnPath", "beside_the_file", "refuse_sha
 
 def beside_the_file(path: Path, info: ValidationInfo) -> Path:
     """A path of an entry, relative to the catalogue file that states it."""
-    return Path(info.context["folder"], path.expanduser()) if info.context else path
+    return Path(info.context["folder"], expanded(path)) if info.context else path
 
 
 def _crop(value: object) -> object:
@@ -76,7 +77,7 @@ class ImagesEntry(Entry):
     crop: Annotated[Crop | None, BeforeValidator(_crop)] = None
 
 
-def refuse_shared(drives: Iterable[tuple[Path, Sequence[Path]]]) -> None:
+def refuse_shared(drives: Iterable[tuple[Path | str, Sequence[Path]]]) -> None:
     """Refuse drives, each a name and its images, of which two share an image, whatever name it goes by: DataError."""
     for (a, images), (b, others) in combinations(drives, 2):
         shared = sorted({realpath(image) for image in images} & {realpath(image) for image in others})

@@ -20,7 +20,7 @@ if TYPE_CHECKING:
     from matplotlib.axes import Axes
     from matplotlib.figure import Figure
 
-__all__ = ["route_maps"]
+__all__ = ["route_maps", "show_north", "strip"]
 
 # Inches that a panel's title takes, and that the figure needs besides panels.
 _TITLE, _REST = 0.3, 0.75
@@ -64,7 +64,7 @@ def route_maps(runs: Sequence[Run], learn: Positions | None = None) -> Figure:
         figure = new_figure((window.inches + _TITLE) * len(agents) + _REST)
         grid = figure.subplots(len(agents), len(distances), squeeze=False)
         for axes in grid.flat:
-            _strip(axes, window)
+            strip(axes, window)
         for run in runs:
             _draw(grid[agents.index(run.agent), distances.index(run.distance)], run, project, learn, window.lane)
         for axes in grid[-1]:
@@ -72,7 +72,7 @@ def route_maps(runs: Sequence[Run], learn: Positions | None = None) -> Figure:
             axes.tick_params(bottom=True, labelbottom=True)
         figure.supxlabel("m", fontsize=8)
         _explain(figure, runs)
-        _show_north(figure, project)
+        show_north(figure, project)
     return figure
 
 
@@ -80,7 +80,7 @@ def _queries(run: Run) -> Positions:
     return np.column_stack([run.trace.east, run.trace.north])
 
 
-def _strip(axes: Axes, window: Window) -> None:
+def strip(axes: Axes, window: Window) -> None:
     """Leave nothing of a panel but its window, at one scale both ways."""
     axes.set(xlim=(window.low[0], window.high[0]), ylim=(window.low[1], window.high[1]), aspect="equal")
     axes.spines[:].set_visible(False)
@@ -115,7 +115,7 @@ def _explain(figure: Figure, runs: Sequence[Run]) -> None:
     figure.legend(signs, [mark.label for mark in marks], loc="outside upper left", ncols=4, handletextpad=0.1)
 
 
-def _show_north(figure: Figure, project: Projection) -> None:
+def show_north(figure: Figure, project: Projection) -> None:
     """An arrow to the north in the upper right corner, where the legend leaves room."""
     north = np.array([0.0, 0.08]) @ project.rotation
     middle = np.array([figure.get_figwidth() - 0.32, figure.get_figheight() - 0.24])

@@ -3,7 +3,7 @@
 The CSV is encoded in UTF-8 and has a header. Its columns, in any order:
 
 - file: the image (PNG or JPEG), relative to the CSV
-- time: seconds, increasing
+- time: seconds from 0 up, increasing
 - east, north: metres, of one origin for all drives of a route; or latitude, longitude: degrees (WGS 84)
 - heading_deg: degrees clockwise from north; without it the heading is the direction of the positions
 """
@@ -24,28 +24,34 @@ from vprbench.geodesy import check_geodetic, derived_headings, local_positions, 
 from vprbench.readers.crop import Crop
 from vprbench.readers.csv_table import CsvTable, read_csv
 from vprbench.readers.images import ImageFiles, content_hash, image_size, optics
+from vprbench.readers.motion import Motion
 from vprbench.readers.number_files import check_increasing
+from vprbench.readers.speed import check_speed
 from vprbench.route import Camera, Traverse
 
 __all__ = ["FolderDrive"]
 
 _LOCAL, _GEODETIC = ("east", "north"), ("latitude", "longitude")
 
-# Faster than any road vehicle: such a step is a lost fix (often 0, 0) or a wrong unit. Our choice.
-_FASTEST = 100.0
-
 
 @dataclass(frozen=True)
 class FolderDrive:
-    """One drive of a user's own.
+    """One drive of a user's own, or a part of it.
 
     Attributes:
         path: the CSV.
+        frames: the first and the last frame of the part, counted from 0; None for all.
         crop: the band of its images that becomes the frame; None for all of them.
     """
 
     path: Path
+    frames: tuple[int, int] | None = None
     crop: Crop | None = None
+
+    @property
+    def name(self) -> str:
+        """The CSV, and which of its frames."""
+        return str(self.path) if self.frames is None else "{}, frames {}-{}".format(self.path, *self.frames)
 
     @cached_property
     def images(self) -> tuple[Path, ...]:
@@ -53,6 +59,8 @@ class FolderDrive:
         names = self._table.columns["file"]
         rows: dict[str, int] = {}
         for row, name in enumerate(names):
+            if not name:
+                raise DataError(f"{self._table.where(row)}: no image; give its file")
             if rows.setdefault(name, row) != row:
                 raise DataError(f"{self._table.where(row)}: the image of another line too, {name}")
         return tuple(self.path.parent / name for name in names)
@@ -71,8 +79,14 @@ class FolderDrive:
         remedy = f"Put each image where {self.path} says, relative to that file."
         if not self.path.is_file():
             return Need(str(self.path), self.path.parent, (), (), (self.path,), remedy)
-        files = {frame: (image,) for frame, image in enumerate(self.images)}
+        files = {frame: (image,) for frame, image in enumerate(self.images, self._first)}
         return need_of(str(self.path), self.path.parent, files, (), remedy)
+
+    def motion(self, origin: Float64[np.ndarray, "2"] | None) -> Motion:
+        """Where the vehicle was at each frame; the origin is that of `traverse`."""
+        positions = self._positions(origin)
+        times = self._times(positions)
+        return Motion(positions, self._headings(positions), times)
 
     def traverse(self, camera: Callable[[int], Camera], origin: Float64[np.ndarray, "2"] | None) -> Traverse:
         """The drive.
@@ -81,19 +95,18 @@ class FolderDrive:
             camera: of the reduced frames, given the width of the images, pixels.
             origin: latitude and longitude of the local plane's origin, where the CSV has these.
         """
-        positions = self._positions(origin)
-        times, headings = self._times(positions), self._headings(positions)
+        positions, headings, times = self.motion(origin)
         size = image_size(self.images[0])
         seen_by = camera(size[0])
         parts = (positions, times, headings, *optics(seen_by, self.crop))
         return Traverse(
-            name=str(self.path) if self._has_heading else f"{self.path} (headings from its positions)",
+            name=self.name if self._has_heading else f"{self.name} (headings from its positions)",
             frames=ImageFiles(self.images, size, crop=self.crop),
             positions=positions,
             headings=headings,
             times=times,
             camera=seen_by,
-            indices=np.arange(len(positions)),
+            indices=self._first + np.arange(len(positions)),
             checksum=content_hash(self.images, *parts),
             geodetic=self.geodetic,
             heading_source="measured" if self._has_heading else "derived",
@@ -112,7 +125,11 @@ class FolderDrive:
             raise DataError(f"{self.path}, line 1: {fault}; the columns are file, time, {pair}, and heading_deg")
         if len(table.lines) < 2:
             raise DataError(f"{self.path}: {len(table.lines)} frames, and a drive has at least two")
-        return table
+        return table if self.frames is None else table.part(*self.frames)
+
+    @property
+    def _first(self) -> int:
+        return 0 if self.frames is None else self.frames[0]
 
     @property
     def _has_heading(self) -> bool:
@@ -133,11 +150,7 @@ class FolderDrive:
         """Seconds; a step between frames that no road vehicle makes is refused."""
         times = self._table.numbers("time")
         check_increasing(times, self._table.where)
-        speeds = np.linalg.norm(np.diff(positions, axis=0), axis=1) / np.diff(times)
-        bad = np.flatnonzero(speeds > _FASTEST)
-        if bad.size:
-            where, speed = self._table.where(int(bad[0]) + 1), speeds[bad[0]]
-            raise DataError(f"{where}: {speed:.0f} m/s since the frame before; check the position and the time (s)")
+        check_speed(positions, times, self._table.where)
         return times
 
     def _headings(self, positions: Float64[np.ndarray, "n 2"]) -> Float64[np.ndarray, " n"]:

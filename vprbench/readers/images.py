@@ -23,6 +23,9 @@ _SUFFIXES = {".png", ".jpg", ".jpeg"}
 _PNG = b"\x89PNG\r\n\x1a\n"
 _JPEG, _JPEG_END = b"\xff\xd8\xff", b"\xff\xd9"
 
+# No focal length is so many times the width, or the width so many times it. Our choice.
+_LENS = 1000
+
 
 @dataclass(frozen=True)
 class ImageFiles:
@@ -33,17 +36,19 @@ class ImageFiles:
         size: width and height that every file must have, pixels; None where they may differ.
         crop: the band of the images that becomes the frame; None for all of them, squeezed.
         bayer: the colour filter of a raw sensor image.
+        colour: whether colour is taken, and converted; a grey camera's files hold none.
     """
 
     paths: tuple[Path, ...]
     size: tuple[int, int] | None
     crop: Crop | None = None
     bayer: Bayer | None = None
+    colour: bool = True
 
     def __getitem__(self, index: int, /) -> Frame:
         """Frame `index`, reduced by pixel area; DataError where its file is not a whole 8-bit image."""
         path = self.paths[index]
-        image = read_grey(path)
+        image = read_grey(path, colour=self.colour)
         if self.size is not None and image.shape[::-1] != self.size:
             raise DataError(
                 f"{path}: {_times(image.shape[::-1])} pixels where the drive's other frames have "
@@ -54,17 +59,22 @@ class ImageFiles:
         return cv2.resize(image, (FRAME_WIDTH, FRAME_HEIGHT), interpolation=cv2.INTER_AREA).astype(np.uint8)
 
 
-def read_grey(path: Path) -> UInt8[np.ndarray, "height width"]:
-    """The grey image in a PNG or JPEG file; colour is converted, damage and 16 bits are a DataError."""
+def read_grey(path: Path, *, colour: bool = True) -> UInt8[np.ndarray, "height width"]:
+    """The grey image in a PNG or JPEG file; damage and 16 bits are a DataError, colour is converted or one too."""
     data = _bytes(path)
     fault = _fault(data)
     if fault:
         raise DataError(f"{path}: {fault}; fetch the file again")
-    image = cv2.imdecode(np.frombuffer(data, np.uint8), cv2.IMREAD_ANYDEPTH | cv2.IMREAD_ANYCOLOR)
+    try:
+        image = cv2.imdecode(np.frombuffer(data, np.uint8), cv2.IMREAD_ANYDEPTH | cv2.IMREAD_ANYCOLOR)
+    except cv2.error:  # larger than OpenCV reads
+        image = None
     if image is None:
         raise DataError(f"{path}: the image cannot be decoded; fetch the file again")
     if image.dtype != np.uint8:
         raise DataError(f"{path}: {8 * image.itemsize} bits a pixel where 8 are due; convert it to 8 bits")
+    if image.ndim > 2 and not colour:
+        raise DataError(f"{path}: colour, where the camera is grey; put the grey image there or name the colour camera")
     grey = image if image.ndim == 2 else cv2.cvtColor(image, cv2.COLOR_BGR2GRAY)
     return np.asarray(grey, np.uint8)
 
@@ -89,10 +99,13 @@ def image_size(path: Path) -> tuple[int, int]:
 def scaled_camera(fx: float, cx: float, width: int, image: str) -> Camera:
     """The camera of the reduced frames, given its focal length and principal column at full width, pixels.
 
-    DataError, naming `image`, where the principal column lies outside: they belong to another image size.
+    DataError, naming `image`, where the principal column lies outside or no lens has such a focal length: they belong
+    to another image size.
     """
     if not 0 < cx < width:
         raise DataError(f"{image}: {width} pixels wide, but cx is {cx:g}: not the calibration of these images")
+    if not width / _LENS < fx < width * _LENS:
+        raise DataError(f"{image}: {width} pixels wide, but fx is {fx:g}: not the calibration of these images")
     scale = FRAME_WIDTH / width
     return Camera(float(fx * scale), float(cx * scale))
 

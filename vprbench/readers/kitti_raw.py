@@ -6,8 +6,10 @@ The layout is `DATE/DATE_drive_NNNN_sync/image_00/data/NNNNNNNNNN.png`, `.../oxt
 
 from __future__ import annotations
 
+import re
 import tomllib
 from collections.abc import Iterable, Mapping
+from contextlib import suppress
 from dataclasses import dataclass, replace
 from functools import cache
 from importlib import resources
@@ -31,6 +33,8 @@ RawCamera = Literal["image_00", "image_01", "image_02", "image_03"]
 
 # Latitude, longitude, altitude, roll, pitch, yaw, and 24 more.
 _OXTS_COLUMNS, _YAW = 30, 5
+
+_STAMP = re.compile(r"[12]\d{3}-\d\d-\d\d \d\d:\d\d:\d\d(\.\d{1,9})?", re.ASCII)
 
 
 @dataclass(frozen=True)
@@ -78,14 +82,27 @@ class RawDrive:
         rows = [self._read_fix(frame) for frame in frames]
         return np.concatenate(rows)[:, [0, 1, _YAW]]
 
+    def whole(self) -> FrameRun:
+        """All frames that have a fix; DataError where there are none."""
+        numbers = sorted(int(path.stem) for path in (self.folder / "oxts" / "data").glob("[0-9]*.txt"))
+        if len(numbers) < 2:
+            raise DataError(f"{self.folder / 'oxts' / 'data'}: no fixes of a drive; {self.need([0, 1]).remedy}")
+        return FrameRun(self.name, numbers[0], numbers[-1])
+
+    def motion(self, run: FrameRun) -> Motion:
+        """Where the vehicle was along a run of frames, in the local plane about its first fix."""
+        fixes = self.fixes(run.frames)
+        return _motion(fixes, self._times(run), fixes[0, :2])
+
     def traverse(self, run: FrameRun, origin: Float64[np.ndarray, "2"]) -> Traverse:
         """The drive along a run of frames, in the local plane about `origin` (latitude, longitude)."""
         fixes = self.fixes(run.frames)
         geodetic, times = fixes[:, :2], self._times(run)
-        motion = Motion(local_positions(geodetic, origin), compass_heading(fixes[:, 2]), times)
+        motion = _motion(fixes, times, origin)
         projection = read_projection(self.calibration, f"P_rect_{self.camera[-2:]}")
         paths = tuple(self._image(i) for i in run.frames)
-        drive = filmed(f"KITTI {self.name}", run, paths, projection, motion, (fixes, times))
+        colour = self.camera in ("image_02", "image_03")
+        drive = filmed(f"KITTI {self.name}", run, paths, projection, motion, (fixes, times), colour=colour)
         return replace(drive, geodetic=geodetic)
 
     def _times(self, run: FrameRun) -> Float64[np.ndarray, " n"]:
@@ -105,6 +122,8 @@ class RawDrive:
         if len(row) != 1:
             raise DataError(f"{path}: {len(row)} lines where one is due")
         check_geodetic(row[:, :2], lambda _: str(path))
+        if abs(row[0, _YAW]) > 2 * np.pi:
+            raise DataError(f"{path}: yaw {row[0, _YAW]:g} is not within a turn, 6.28 rad")
         return row
 
     @property
@@ -116,6 +135,12 @@ class RawDrive:
 
     def _fix(self, frame: int) -> Path:
         return self.folder / "oxts" / "data" / f"{frame:010d}.txt"
+
+
+def _motion(
+    fixes: Float64[np.ndarray, "n 3"], times: Float64[np.ndarray, " n"], origin: Float64[np.ndarray, "2"]
+) -> Motion:
+    return Motion(local_positions(fixes[:, :2], origin), compass_heading(fixes[:, 2]), times)
 
 
 def raw_run(run: FrameRun) -> FrameRun:
@@ -139,12 +164,8 @@ def _sequences() -> Mapping[str, FrameRun]:
 
 
 def _instant(line: str, path: Path, number: int) -> np.datetime64:
-    instant: np.datetime64
-    try:
-        instant = np.datetime64(line.strip().replace(" ", "T"), "ns")
-    except ValueError:
-        instant = np.datetime64("NaT")
-    # An empty line is read as NaT, not as an error.
-    if np.isnat(instant):
-        raise DataError(f"{path}, line {number}: {line!r} is not a time")
-    return instant
+    # NumPy would take "now" and "5" (a year) too.
+    if _STAMP.fullmatch(line.strip()):
+        with suppress(ValueError):
+            return np.datetime64(line.strip().replace(" ", "T"), "ns")
+    raise DataError(f"{path}, line {number}: {line!r} is not a time, for example 2011-10-03 12:55:34.931552000")

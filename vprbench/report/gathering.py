@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import tomllib
 from pathlib import Path
 
 import pandas as pd
@@ -15,6 +14,7 @@ from vprbench.provenance import data_checksum
 from vprbench.report.material import Absence, Material, Question
 from vprbench.results import ResultTable, read_table
 from vprbench.route import Route
+from vprbench.toml_files import parse_toml, toml_text
 
 __all__ = ["read_material"]
 
@@ -49,11 +49,8 @@ def _question(path: Path) -> Question:
     """The TOML beside the results."""
     if not path.exists():
         return Question("", {})
-    try:
-        text = path.read_text("utf-8")
-        return Question(text, tomllib.loads(text))
-    except (OSError, UnicodeDecodeError, tomllib.TOMLDecodeError) as error:
-        raise ConfigError(f"{path}: {error}") from error
+    text = toml_text(path)
+    return Question(text, parse_toml(text, str(path)))
 
 
 def _runs(table: ResultTable, rows: pd.DataFrame) -> tuple[list[Run], dict[str, str]]:

@@ -6,6 +6,7 @@ import json
 from collections.abc import Iterator, Sequence
 from typing import Any
 
+from vprbench.errors import DataError
 from vprbench.figures.panels import distinct
 from vprbench.report.markup import fragment
 from vprbench.report.material import Material
@@ -54,7 +55,10 @@ def _route(group: Any) -> dict[str, str]:  # noqa: ANN401 - a group of rows
 
 def _configured(config: str) -> Iterator[str]:
     """An agent's parts and options as words, the localizer first."""
-    table = json.loads(config) if config else {}
+    try:
+        table = json.loads(config) if config else {}
+    except ValueError as error:
+        raise DataError(f"agent_config {config!r} of the results is no JSON; measure its cells again") from error
     for kind in distinct(["localizer", *table]):
         part = table.get(kind)
         if isinstance(part, dict):
