@@ -119,7 +119,7 @@ class CoHOG:
         """Response of a place stored as each of `places` to each of `queries`: bitwise what `respond` gives."""
         responses = np.empty((len(queries), len(places)), np.float32)
         if places:
-            memory = PlaceMemory.of([place.planes for place in places])
+            memory = PlaceMemory.of(place.planes for place in places)
             for query, row in zip(queries, responses, strict=True):
                 score_places(query, memory.planes, row, self.threads)
         return responses

@@ -1,0 +1,112 @@
+from __future__ import annotations
+
+from copy import deepcopy
+from typing import Any
+
+import numpy as np
+import pytest
+
+from vprbench.agents import build
+from vprbench.checks import Check, parametrize_with_checks
+from vprbench.checks.samples import drive, flat_frame, training_drives
+from vprbench.errors import ConfigError, DataError
+from vprbench.observation import Drive
+from vprbench.protocols import DescriptorLocalizer
+from vprbench.route import Route
+from vprbench.types import Observation
+from vprbench_encoders.log_polar import log_polar_6
+from vprbench_localizers import landmark_index
+from vprbench_localizers.max_pi import MaxPi
+from vprbench_localizers.max_pi_ann import MaxPiAnn
+
+
+def few() -> MaxPiAnn:
+    return MaxPiAnn(log_polar_6(), lists=8)
+
+
+@parametrize_with_checks(localizer=few)
+def test_max_pi_ann_conforms(check: Check) -> None:
+    check.run()
+
+
+def learned(localizer: MaxPi | MaxPiAnn, route: Route) -> MaxPi | MaxPiAnn:
+    """Fitted, and with a place of every other frame."""
+    localizer.fit([Drive(traverse) for traverse in route.training])
+    localizer.clear(1.0)
+    for observation in Drive(route.learn)[::2]:
+        localizer.learn(observation)
+    return localizer
+
+
+@pytest.mark.parametrize("width", [5.0, None])
+def test_where_every_landmark_is_reached_it_is_max_pi_bit_by_bit(toy_route: Route, width: float | None) -> None:
+    exact = learned(MaxPi(log_polar_6(), azimuth_width_deg=width), toy_route)
+    options: dict[str, Any] = {"azimuth_width_deg": width, "neighbours": 10**4, "lists": 4, "probes": 4}
+    everywhere = learned(MaxPiAnn(log_polar_6(), **options), toy_route)
+    for query in Drive(toy_route.test, gps=False)[::5]:
+        np.testing.assert_array_equal(everywhere.respond(query), exact.respond(query))
+
+
+def test_a_place_responds_as_in_max_pi_or_not_at_all(toy_route: Route) -> None:
+    exact = learned(MaxPi(log_polar_6()), toy_route)
+    nearest = learned(MaxPiAnn(log_polar_6(), neighbours=1, lists=8, probes=2), toy_route)
+    silent = 0
+    for query in Drive(toy_route.test, gps=False)[::3]:
+        asked, told = exact.respond(query), nearest.respond(query)
+        np.testing.assert_array_equal(told[told > 0], asked[told > 0])
+        assert told.max() == asked.max()
+        silent += int(np.count_nonzero((told == 0) & (asked > 0)))
+    assert silent > 0
+
+
+def test_it_is_built_from_its_name_and_offers_no_matrix_of_responses() -> None:
+    localizer = build({"localizer": "max-pi-ann", "encoder": "log-polar-6", "neighbours": 5})
+    assert isinstance(localizer, MaxPiAnn)
+    # A response depends on which other places are nearer.
+    assert not isinstance(localizer, DescriptorLocalizer)
+
+
+def test_a_copy_learns_for_itself() -> None:
+    original = few()
+    original.fit(training_drives())
+    first, second = drive(2)
+    original.clear(1.0)
+    original.learn(first)
+    copied = deepcopy(original)
+    copied.learn(second)
+    assert (len(original.respond(first)), len(copied.respond(first))) == (1, 2)
+    assert copied.respond(second)[1] == pytest.approx(1.0)
+
+
+def test_it_must_be_fitted_even_where_the_threshold_is_given() -> None:
+    localizer, (seen,) = MaxPiAnn(log_polar_6(), recognition_threshold=0.5), drive(1)
+    for ask in (localizer.learn, localizer.respond):
+        with pytest.raises(ConfigError, match=r"call fit\(drives\)"):
+            ask(seen)
+
+
+def test_training_drives_without_landmarks_are_refused() -> None:
+    blank = [Observation(**{**seen, "frame": flat_frame(9)}) for seen in drive(3)]
+    with pytest.raises(DataError, match="no landmark"):
+        MaxPiAnn(log_polar_6(), recognition_threshold=0.5).fit([blank])
+
+
+@pytest.mark.parametrize(
+    ("options", "text"),
+    [
+        ({"neighbours": 0}, "neighbours must be 1 or more"),
+        ({"lists": 0}, "lists must be 1 or more"),
+        ({"probes": -1}, "probes must be 1 or more"),
+        ({"vigilance": 2.0}, "vigilance must be"),
+        ({"azimuth_width_deg": -1.0}, "azimuth_width_deg must be"),
+    ],
+)
+def test_an_option_out_of_range_is_refused(options: dict[str, Any], text: str) -> None:
+    with pytest.raises(ConfigError, match=text):
+        MaxPiAnn(log_polar_6(), **options)
+
+
+def test_without_faiss_none_is_built(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(landmark_index, "find_spec", lambda name: None)
+    with pytest.raises(ConfigError, match=r"pip install 'vprbench\[ann\]'$"):
+        build({"localizer": "max-pi-ann", "encoder": "log-polar-6"})
