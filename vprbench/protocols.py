@@ -37,12 +37,14 @@ Description = TypeVar("Description")
 class Encoder(Protocol):
     """The what pathway: turns a frame into landmarks, and compares their signatures.
 
-    An encoder may also offer `match_pairs(queries, memory, query_index, memory_index)`, the same matches for listed
-    pairs only; a localizer that knows which pairs matter is faster for it. And `match_pairs_above(..., floor)`: exact
-    where a match is above the floor, elsewhere any value that is not; faster still where weak matches do not count.
-    And an attribute `matches_by_overlap`, true if `match` is 2 sum of shares / (L1(a) + L1(b)), in float32 from the
-    first value to the last, where two values share the smaller if both have one sign, and 1 of two rows of zeros: then
-    a localizer matches by itself, and looks only at signatures that have something in common.
+    An encoder may also offer what makes a localizer faster that knows which pairs matter:
+
+    - `match_pairs(queries, memory, query_index, memory_index)`: the same matches, for listed pairs only.
+    - `matches_by_sketch`, if it is true: `sketch(signatures)`, and `match_at_most(...)` as `match_pairs` of two such
+      sketches, which no match exceeds. Then only pairs that may matter are compared in full.
+    - `matches_by_overlap`: whether `match` is 2 sum of shares / (L1(a) + L1(b)), in float32 from the first value to the
+      last, where two values share the smaller if both have one sign; and 1 of two rows of zeros. Then a localizer
+      matches by itself, and looks only at signatures that have something in common.
     """
 
     def fit(self, frames: Sequence[Frame]) -> None:

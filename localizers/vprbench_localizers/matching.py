@@ -11,7 +11,7 @@ from jaxtyping import Float32, Int64
 from vprbench.protocols import Encoder
 from vprbench_localizers.unit_memory import Units
 
-__all__ = ["OverlapEncoder", "PairEncoder", "PairMatcher", "ThresholdEncoder", "matches_by_overlap", "pair_matcher"]
+__all__ = ["OverlapEncoder", "PairEncoder", "PairMatcher", "SketchingEncoder", "pair_matcher"]
 
 
 @runtime_checkable
@@ -30,18 +30,27 @@ class PairEncoder(Encoder, Protocol):
 
 
 @runtime_checkable
-class ThresholdEncoder(PairEncoder, Protocol):
-    """One that is faster still where only matches above some value count: optional."""
+class SketchingEncoder(PairEncoder, Protocol):
+    """One that can tell from less than the signatures how alike they are at most: optional.
 
-    def match_pairs_above(
+    Attributes:
+        matches_by_sketch: whether that is worth it.
+    """
+
+    matches_by_sketch: bool
+
+    def sketch(self, signatures: Float32[np.ndarray, "rows size"]) -> Float32[np.ndarray, "rows sketch"]:
+        """What is kept of each signature to bound its matches."""
+        ...
+
+    def match_at_most(
         self,
-        queries: Float32[np.ndarray, "points size"],
-        memory: Float32[np.ndarray, "units size"],
+        queries: Float32[np.ndarray, "points sketch"],
+        memory: Float32[np.ndarray, "units sketch"],
         query_index: Int64[np.ndarray, " pairs"],
         memory_index: Int64[np.ndarray, " pairs"],
-        floor: float,
     ) -> Float32[np.ndarray, " pairs"]:
-        """What `match_pairs` gives, wherever that is above `floor`; elsewhere any value that is not above it."""
+        """Of pairs of sketches, matches that `match_pairs` does not exceed."""
         ...
 
 
@@ -57,13 +66,8 @@ class OverlapEncoder(Encoder, Protocol):
     matches_by_overlap: bool
 
 
-def matches_by_overlap(encoder: Encoder) -> bool:
-    """Whether an encoder says that it matches by the overlap of codes."""
-    return bool(getattr(encoder, "matches_by_overlap", False))
-
-
 class PairMatcher(Protocol):
-    """How alike each pair (queries[query_index[i]], units.signatures[unit_index[i]]) is, where above a floor."""
+    """How alike each pair (queries[query_index[i]], units.signatures[unit_index[i]]) is."""
 
     def __call__(
         self,
@@ -72,19 +76,17 @@ class PairMatcher(Protocol):
         query_index: Int64[np.ndarray, " pairs"],
         unit_index: Int64[np.ndarray, " pairs"],
     ) -> Float32[np.ndarray, " pairs"]:
-        """The match of each pair; where it is not above the floor, any value that is not either."""
+        """The match of each pair."""
         ...
 
 
-def pair_matcher(encoder: Encoder, floor: float) -> PairMatcher:
+def pair_matcher(encoder: Encoder) -> PairMatcher:
     """The fastest comparison of chosen pairs that an encoder has.
 
     One that only has `match` compares one place at a time: matrix products round differently with the shape of their
     operands, and a place must respond the same whichever other places there are.
     """
     # By name, since Python takes longer to check a protocol than Max-Pi takes to compare a place.
-    if above := getattr(encoder, "match_pairs_above", None):
-        return lambda queries, units, p, m: above(queries, units.signatures, p, m, floor)
     if pairs := getattr(encoder, "match_pairs", None):
         return lambda queries, units, p, m: pairs(queries, units.signatures, p, m)
 

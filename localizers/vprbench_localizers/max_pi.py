@@ -7,7 +7,6 @@ where (agreement of azimuths), and a place cell's response is the mean activity 
 from __future__ import annotations
 
 from collections.abc import Sequence
-from functools import partial
 from math import inf, isfinite, radians
 from typing import ClassVar
 
@@ -19,10 +18,7 @@ from vprbench.protocols import Encoder, Recruiting
 from vprbench.types import Observation, Responses
 from vprbench_localizers.azimuth import azimuths
 from vprbench_localizers.calibration import Calibration
-from vprbench_localizers.matching import matches_by_overlap
-from vprbench_localizers.overlap_memory import OverlapMemory
-from vprbench_localizers.pair_memory import PairMemory
-from vprbench_localizers.segments import SegmentedMemory
+from vprbench_localizers.memory import memory_for
 from vprbench_localizers.unit_activity import Rule, View
 
 __all__ = ["MaxPi"]
@@ -38,8 +34,9 @@ class MaxPi:
     recruits. A place responds 1 to the very frame that it was made of, and 0 to a frame without landmarks.
 
     Args:
-        encoder: finds and compares the landmarks, fitted before; one that also has `match_pairs` (see `PairEncoder`)
-            is faster, one that matches by the overlap of sparse codes (see `OverlapEncoder`) far faster.
+        encoder: finds and compares the landmarks, fitted before; one that also has `match_pairs` is faster, and still
+            faster are those that match by sketches or by the overlap of sparse codes: see
+            `matching`.
         vigilance: until `clear` sets another, 0..1 (our choice).
         azimuth_width_deg: width of the Gaussian agreement of azimuths, degrees (our choice); None or inf: all
             azimuths agree, so the heading plays no part.
@@ -92,7 +89,7 @@ class MaxPi:
         """Forget every place, and recruit from now on at this vigilance (0..1)."""
         _require(0 <= sampling <= 1, "vigilance must be 0..1", sampling)
         self.vigilance = sampling
-        self._memory = self._empty_memory()
+        self._memory = memory_for(self.encoder)
 
     def learn(self, observation: Observation) -> int | None:
         """Make this observation a place if no place responds to it as strongly as the vigilance."""
@@ -120,7 +117,7 @@ class MaxPi:
         """Response of a place stored as each of `places` to each of `queries`: bitwise what `respond` gives."""
         responses = np.zeros((len(queries), len(places)), np.float32)
         for first in range(0, len(places), BLOCK):
-            memory = self._empty_memory()
+            memory = memory_for(self.encoder)
             for place in places[first : first + BLOCK]:
                 memory.add(place)
             for query, row in zip(queries, responses, strict=True):
@@ -143,9 +140,6 @@ class MaxPi:
         if self.recognition_threshold is None:
             raise ConfigError("max-pi: no recognition threshold: call fit(drives), or give recognition_threshold")
         return Rule(self.recognition_threshold, self._width, self._reach)
-
-    def _empty_memory(self) -> SegmentedMemory:
-        return SegmentedMemory(OverlapMemory if matches_by_overlap(self.encoder) else partial(PairMemory, self.encoder))
 
 
 def _require(valid: bool, rule: str, value: object) -> None:

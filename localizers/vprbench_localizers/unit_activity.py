@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 
 from vprbench_localizers.azimuth import agreement
 
-__all__ = ["Rule", "View", "mean_by_place", "product"]
+__all__ = ["Rule", "View", "excite", "mean_by_place", "product", "products"]
 
 
 class View(NamedTuple):
@@ -44,6 +44,33 @@ class Rule(NamedTuple):
 def product(recognised: np.float32, query: np.float32, unit: np.float32, width: float) -> np.float32:
     """What times where: the recognition of a pair, at most 1, times the agreement of its two azimuths."""
     return min(recognised, np.float32(1)) * agreement(query, unit, width)
+
+
+@njit(cache=True)
+def products(
+    p: NDArray[np.int64],
+    m: NDArray[np.int64],
+    matches: NDArray[np.float32],
+    queries: NDArray[np.float32],
+    units: NDArray[np.float32],
+    width: float,
+    threshold: float,
+) -> NDArray[np.float32]:
+    """What times where of each pair: min(1, max(0, s - RT) / (1 - RT)) * agreement of azimuths."""
+    found = np.zeros(len(matches), np.float32)
+    scale = np.float32(1) - np.float32(threshold)
+    for pair in range(len(matches)):
+        recognised = (matches[pair] - np.float32(threshold)) / scale
+        if recognised > 0:
+            found[pair] = product(recognised, queries[p[pair]], units[m[pair]], width)
+    return found
+
+
+@njit(cache=True)
+def excite(activity: NDArray[np.float32], m: NDArray[np.int64], found: NDArray[np.float32]) -> None:
+    """Raise each unit's activity to the largest product of its pairs."""
+    for pair in range(len(m)):
+        activity[m[pair]] = max(activity[m[pair]], found[pair])
 
 
 @njit(cache=True)

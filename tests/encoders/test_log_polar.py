@@ -140,6 +140,22 @@ def test_chosen_pairs_match_bitwise_as_all_pairs_do() -> None:
     )
 
 
+@settings(max_examples=30, deadline=None)
+@given(seed=st.integers(0, 2**32 - 1), blend=st.floats(0.0, 1.0), shift=st.floats(0.0, 0.5))
+def test_no_match_exceeds_what_sketches_allow(seed: int, blend: float, shift: float) -> None:
+    """Of maps that are alike to any degree; and sketches tell all where one map is brighter throughout."""
+    encoder, rng, index = LogPolar(), np.random.default_rng(seed), np.zeros(1, np.int64)
+    one, other = rng.random((2, 1, 2916), np.float32)
+    mixed = np.float32(blend) * one + np.float32(1 - blend) * other
+    assert encoder.sketch(one).shape == (1, 162)
+    assert encoder.sketch(one)[0, 28] == pytest.approx(one.reshape(54, 54)[9:18, 2:4].mean(), rel=1e-5)
+    for w in (mixed, one, 1 - one):
+        assert encoder.match_at_most(encoder.sketch(one), encoder.sketch(w), index, index) >= encoder.match(one, w)[0]
+    brighter = one / 2 + np.float32(shift)
+    bound = encoder.match_at_most(encoder.sketch(one / 2), encoder.sketch(brighter), index, index)
+    assert bound == pytest.approx(encoder.match(one / 2, brighter)[0], abs=2e-3)
+
+
 def test_it_is_an_encoder() -> None:
     assert isinstance(LogPolar(), Encoder)
 

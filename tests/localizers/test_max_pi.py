@@ -19,7 +19,7 @@ from vprbench.recruiting import recruit_by_vigilance
 from vprbench.types import Frame, Landmarks, Observation
 from vprbench_encoders.log_polar import LogPolar
 from vprbench_localizers.azimuth import azimuths
-from vprbench_localizers.matching import PairEncoder, ThresholdEncoder
+from vprbench_localizers.matching import PairEncoder, SketchingEncoder
 from vprbench_localizers.max_pi import MaxPi
 from vprbench_localizers.pair_memory import TOGETHER
 from vprbench_localizers.unit_activity import View
@@ -322,6 +322,6 @@ def test_configurations_build_it_and_it_keeps_its_protocols() -> None:
     agent = build({"localizer": "max-pi", "encoder": {"name": "log-polar-12", "points": 15}, "vigilance": 0.3})
     assert isinstance(agent, MaxPi)
     assert isinstance(agent, DescriptorLocalizer)
-    assert isinstance(agent.encoder, ThresholdEncoder)
+    assert isinstance(agent.encoder, SketchingEncoder)
     assert not isinstance(TableEncoder([]), PairEncoder)
     assert agent.vigilance == 0.3

@@ -13,10 +13,10 @@ from numpy.typing import NDArray
 from vprbench.errors import PluginError
 from vprbench.types import Frame, Landmarks
 from vprbench_localizers.max_pi import MaxPi
+from vprbench_localizers.memory import Memory, SegmentedMemory
 from vprbench_localizers.overlap_memory import OverlapMemory
 from vprbench_localizers.pair_memory import PairMemory
 from vprbench_localizers.posting_lists import BLOCK, SECTORS
-from vprbench_localizers.segments import Memory, SegmentedMemory
 from vprbench_localizers.unit_activity import Rule, View
 
 Codes = NDArray[np.float32]

@@ -48,14 +48,18 @@ def _match_pairs_gives_what_match_gives(subject: EncoderSubject) -> None:
 
 
 @matching_suite.add
-def _match_pairs_above_is_exact_above_the_floor(subject: EncoderSubject) -> None:
-    compare, exact = _offered(subject, "match_pairs_above"), _offered(subject, "match_pairs")
-    pairs, _ = _pairs(subject)
-    matches = exact(*pairs)
-    for floor in np.percentile(matches, [0, 50, 90]):
-        found, above = compare(*pairs, float(floor)), matches > floor
-        asked = np.array_equal(found[above], matches[above]) and bool((found[~above] <= floor).all())
-        expect(asked, "match_pairs_above gives the bits of match_pairs above the floor, and nothing above it elsewhere")
+def _matches_at_most_what_sketches_say(subject: EncoderSubject) -> None:
+    if not getattr(subject.encoder, "matches_by_sketch", False):
+        raise DoesNotApply("it does not say that it matches by sketch, which is optional")
+    sketch, bound, exact = (_offered(subject, name) for name in ("sketch", "match_at_most", "match_pairs"))
+    (one, other, p, m), _ = _pairs(subject)
+    # Equal ones too, where a bound has the least to spare.
+    for memory in (other, one):
+        sketches = sketch(one), sketch(memory)
+        found, matches = bound(*sketches, p, m % len(memory)), exact(one, memory, p, m % len(memory))
+        asked = found.dtype == np.float32 and found.shape == matches.shape and bool((found >= matches).all())
+        expect(asked, "match_at_most gives float32 for each pair of sketches, no less than match_pairs gives")
+    expect(sketch(one[:0]).shape == (0, sketches[0].shape[1]), "of no signatures there are no sketches")
 
 
 @matching_suite.add

@@ -22,6 +22,7 @@ __all__ = [
     "report",
     "reproduce",
     "run",
+    "scale",
     "score",
     "sweep",
     "table",
@@ -43,6 +44,7 @@ Cache = Annotated[
     typer.Option(help="Folder that keeps fitted encoders, or none. Default: $VPRBENCH_CACHE, else the user's cache."),
 ]
 Out = Annotated[Path, typer.Option(help="Folder of the result tables.")]
+Timed = Annotated[list[str] | None, typer.Argument(help="lpmp, hsd-15-30, cohog, ...; or insides of TOML tables.")]
 
 
 @app.command(epilog="Example: vprbench sweep k0-2 --data ~/kitti --jobs 2")
@@ -156,15 +158,8 @@ def fit(
 @app.command(epilog="Example: vprbench frequency lpmp hsd-15-30 cohog --route Street-Wide --places 10,100")
 def frequency(
     route: Annotated[str, typer.Option(help="The route whose frames are learned and asked for.")],
-    agents: Annotated[
-        list[str] | None,
-        typer.Argument(
-            help="lpmp, hsd-12 to hsd-30, hsd-15-30, hsd-plus, cohog (default: all); or insides of TOML tables."
-        ),
-    ] = None,
-    places: Annotated[
-        str | None, typer.Option(help="Numbers of places, with commas between. Default: the paper's, 1 to 1000.")
-    ] = None,
+    agents: Timed = None,
+    places: Annotated[str | None, typer.Option(help="Numbers of places. Default: the paper's, 1,5,10 to 1000.")] = None,
     rounds: Annotated[int | None, typer.Option(min=1, help="How often each is timed. Default: 15.")] = None,
     seed: Annotated[int, typer.Option(min=0, help="For agents that learn from random numbers.")] = 0,
     out: Annotated[Path, typer.Option(help="Folder of the table.")] = Path("runs"),
@@ -182,6 +177,34 @@ def frequency(
 
     request = Timing(agents or [], route, places, rounds, seed, out, data, routes, cache, figures)
     raise typer.Exit(frequency_command(request))
+
+
+@app.command(epilog="Example: vprbench scale hsd-15-30 cohog --route Street-Wide --places 100,1000,10000")
+def scale(
+    route: Annotated[str, typer.Option(help="The route of whose landmarks and frames the map is made.")],
+    agents: Timed = None,
+    places: Annotated[str | None, typer.Option(help="Numbers of places. Default: 100,300,1000 to 100000.")] = None,
+    queries: Annotated[int, typer.Option(min=1, help="At each number of places.")] = 15,
+    gigabytes: Annotated[float, typer.Option(min=0, help="Stop an agent whose places would hold more.")] = 8.0,
+    seconds: Annotated[float, typer.Option(min=0, help="Stop an agent whose query would take longer.")] = 5.0,
+    seed: Annotated[int, typer.Option(min=0, help="Of the map, and for agents that learn from random numbers.")] = 0,
+    out: Annotated[Path, typer.Option(help="Folder of the table.")] = Path("runs"),
+    data: Data = None,
+    routes: Routes = None,
+    cache: Cache = None,
+    figures: Annotated[bool, typer.Option("--figures", help="Draw the curves (needs the figures extra).")] = False,
+) -> None:
+    """Time queries and learning, and weigh places, on a map that grows to the size of a city: 500 km at 5 m.
+
+    Leaves OUT/scale.csv, OUT/scale.json (the machine and the rules) and, if asked for, OUT/figures/. Stop it when you
+    like: finished sizes count.
+    """
+    from vprbench.cli.scaling import Scaling, scale_command
+    from vprbench.scale.growth import Limits
+
+    limits = Limits(gigabytes, seconds)
+    request = Scaling(agents or [], route, places, queries, limits, seed, out, data, routes, cache, figures)
+    raise typer.Exit(scale_command(request))
 
 
 @app.command(epilog="Example: vprbench table runs/streets.csv --columns route --metric auc_all --format latex")

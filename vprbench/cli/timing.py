@@ -30,7 +30,7 @@ from vprbench.provenance import data_checksum, origins
 from vprbench.reporting import Report
 from vprbench.route import Route
 
-__all__ = ["Timing", "frequency_command"]
+__all__ = ["Timing", "frequency_command", "moving_bar"]
 
 
 @dataclass(frozen=True)
@@ -62,7 +62,7 @@ def frequency_command(request: Timing) -> int:
     stamp = _stamp(agents, route, request)
     table, finished = None, 0
     try:
-        with _bar(console) as report:
+        with moving_bar(console) as report:
             timed = _subjects(agents, sizes, route, request, report)
             _tell_missing(timed, agents, sizes, console)
             visits: list[tuple[Visit, ...]] = []
@@ -137,7 +137,7 @@ def _conclude(table: pd.DataFrame, question: Question, request: Timing) -> None:
 
 
 @contextmanager
-def _bar(console: Console) -> Iterator[Report]:
+def moving_bar(console: Console) -> Iterator[Report]:
     """A report that moves one bar, from stage to stage."""
     columns = TextColumn("{task.description}", markup=False), BarColumn(bar_width=28), TimeElapsedColumn()
     left = TextColumn("left"), TimeRemainingColumn()

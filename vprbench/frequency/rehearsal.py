@@ -16,7 +16,7 @@ from vprbench.types import Frame, Landmarks
 __all__ = ["Rehearsal"]
 
 # Methods that an encoder may have beside `match`: pairs of rows by their indices, the third and fourth argument.
-_PAIRWISE = "match_pairs", "match_pairs_above"
+_PAIRWISE = "match_pairs", "match_at_most"
 
 
 class Rehearsal:

@@ -21,11 +21,11 @@ from vprbench.reporting import Report, silent
 from vprbench.route import Traverse
 from vprbench.types import Landmarks, Observation
 
-__all__ = ["Agent", "Subject", "fitted", "subjects"]
+__all__ = ["STEP", "VIGILANCE", "Agent", "Subject", "fitted", "make_place", "subjects"]
 
 # What makes every observation of a `Filling` a place: no response is above a vigilance of 1, and its frames lie a
 # metre apart.
-_VIGILANCE, _STEP = 1.0, 0.5
+VIGILANCE, STEP = 1.0, 0.5
 
 
 class Agent(NamedTuple):
@@ -103,18 +103,18 @@ def subjects(agent: Agent, filling: Filling, sizes: Sequence[int], report: Repor
 def _recruited(agent: Agent, filling: Filling) -> Iterator[Filled]:
     """Let the agent learn the filling; each observation that became a place."""
     known: dict[int, Landmarks] = {}
-    agent.localizer.clear(_VIGILANCE if agent.localizer.recruiting == "vigilance" else _STEP)
+    agent.localizer.clear(VIGILANCE if agent.localizer.recruiting == "vigilance" else STEP)
     index = refused = 0
     while refused < len(filling):
         filled = filling[index]
         with _hurried(agent, filled, known):
-            made = _learned(agent.localizer, filled.observation)
+            made = make_place(agent.localizer, filled.observation)
         index, refused = index + 1, 0 if made else refused + 1
         if made:
             yield filled
 
 
-def _learned(localizer: Localizer, observation: Observation) -> bool:
+def make_place(localizer: Localizer, observation: Observation) -> bool:
     """Make a place of an observation, without comparing it with others if that can be had; whether there is one."""
     if isinstance(localizer, Storing):
         localizer.store(localizer.describe(observation))

@@ -98,7 +98,7 @@ def outcomes(factory: Callable[[], Encoder]) -> dict[str, str]:
     """What came of each check: ok, failed or skipped. See test_matching.py for faster ways to match."""
     found = {}
     for check in encoder_checks(factory):
-        if "match-pairs" in check.name or "matches-by" in check.name:
+        if "match-pairs" in check.name or check.name.startswith("matches-"):
             continue
         try:
             check.run()

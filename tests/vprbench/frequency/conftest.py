@@ -46,8 +46,8 @@ class Pairwise(Clockwork):
     def match_pairs(self, queries: np.ndarray, memory: np.ndarray, q: np.ndarray, m: np.ndarray) -> np.ndarray:
         return (queries[q] == memory[m]).all(axis=1).astype(np.float32)
 
-    def match_pairs_above(self, *arguments: Any) -> np.ndarray:  # noqa: ANN401
-        return self.match_pairs(*arguments[:4]) * (arguments[4] < 1)
+    def match_at_most(self, *arguments: Any) -> np.ndarray:  # noqa: ANN401
+        return self.match_pairs(*arguments) + np.float32(0.5)
 
 
 class Ledger:

@@ -27,8 +27,7 @@ def test_it_passes_everything_on(rehearsal: Any) -> None:  # noqa: ANN401
     np.testing.assert_array_equal(rehearsal.match(ROWS, ROWS), np.eye(2))
     np.testing.assert_array_equal(rehearsal.match_pairs(ROWS, ROWS, np.array([0, 1]), np.array([0, 0])), [1, 0])
     same = np.array([0, 1])
-    for floor, matches in ((0.5, [1, 1]), (1.0, [0, 0])):
-        assert rehearsal.match_pairs_above(ROWS, ROWS, same, same, floor).tolist() == matches
+    assert rehearsal.match_at_most(ROWS, ROWS, same, same).tolist() == [1.5, 1.5]
     assert rehearsal.nickname == "tick"
     with pytest.raises(AttributeError, match="surname"):
         _ = rehearsal.surname
@@ -42,13 +41,13 @@ def test_it_recalls_only_while_it_is_told_to(rehearsal: Any) -> None:  # noqa: A
     with rehearsal.recalling(recalled, blank=True):
         np.testing.assert_array_equal(rehearsal.match(ROWS, ROWS[:1]), np.zeros((2, 1)))
         assert rehearsal.match_pairs(ROWS, ROWS, np.array([0]), np.array([0])).tolist() == [0]
-        assert rehearsal.match_pairs_above(ROWS, ROWS, np.array([0]), np.array([0]), 0.5).tolist() == [0]
+        assert rehearsal.match_at_most(ROWS, ROWS, np.array([0]), np.array([0])).tolist() == [0]
     assert rehearsal.encode(FRAME) is not recalled
     np.testing.assert_array_equal(rehearsal.match(ROWS, ROWS), np.eye(2))
 
 
 def test_it_compares_pairs_only_if_the_other_does(ledger: Callable[..., Agent], rehearsal: Rehearsal) -> None:
-    for name in ("match_pairs", "match_pairs_above"):
+    for name in ("match_pairs", "match_at_most"):
         assert hasattr(rehearsal, name)
         assert not hasattr(ledger().rehearsal, name)
 

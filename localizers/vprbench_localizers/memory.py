@@ -1,19 +1,38 @@
-"""A memory in segments of so many places, so that what a query works on at a time stays in the cache."""
+"""The memory that suits an encoder, in segments, so that what a query works on at a time stays in the cache."""
 
 from __future__ import annotations
 
 from collections.abc import Callable
+from functools import partial
 from typing import Protocol
 
 import numpy as np
 
+from vprbench.protocols import Encoder
 from vprbench.types import Responses
+from vprbench_localizers.matching import OverlapEncoder, SketchingEncoder
+from vprbench_localizers.overlap_memory import OverlapMemory
+from vprbench_localizers.pair_memory import PairMemory
+from vprbench_localizers.sketch_memory import SketchMemory
 from vprbench_localizers.unit_activity import Rule, View
 
-__all__ = ["Memory", "SegmentedMemory"]
+__all__ = ["Memory", "SegmentedMemory", "memory_for"]
 
 # Places of a segment (our choice): the units of so many, with all that is noted of them, fit in 2 MB.
 PLACES = 2048
+
+
+def memory_for(encoder: Encoder) -> SegmentedMemory:
+    """An empty memory, of the fastest kind that an encoder allows."""
+    return SegmentedMemory(partial(_segment, encoder))
+
+
+def _segment(encoder: Encoder) -> Memory:
+    if isinstance(encoder, OverlapEncoder) and encoder.matches_by_overlap:
+        return OverlapMemory()
+    if isinstance(encoder, SketchingEncoder) and encoder.matches_by_sketch:
+        return SketchMemory(encoder)
+    return PairMemory(encoder)
 
 
 class Memory(Protocol):
