@@ -52,7 +52,7 @@ class Trace:
         truth: the place that won the record phase at the nearest learn frame, -1 for none.
         hypothesis: the place that the localizer answered, -1 for none.
         confidence: its response, 0..1; 0 where there is no hypothesis.
-        error_m: distance from where the hypothesised place was learned to the query, NaN where there is none.
+        error_m: distance from where the hypothesised place was learned to the query, NaN where nobody knows.
         tolerance_m: d_NN, the distance from the query to its nearest learn frame.
         correct: right by the place-field rule.
         correct_metric: right by the metric rule, error_m <= sampling distance / 2 + tolerance_m.
@@ -83,9 +83,11 @@ class Trace:
         for name in DTYPES:
             object.__setattr__(self, name, self._typed(name))
         none = self.hypothesis == NO_PLACE
+        # How far off an answer is, nobody knows where there is none, or where a data set lists no right one.
+        unknown = none | (self.truth == NO_PLACE)
         for name in ("east", "north", "tolerance_m", "error_m"):
             known = np.abs(getattr(self, name)) <= LARGEST
-            self._refuse(~(known | none & (name == "error_m")), f"{name} is not a number of metres")
+            self._refuse(~(known | unknown & (name == "error_m")), f"{name} is not a number of metres")
         self._refuse(~(np.isfinite(self.confidence) & (self.confidence >= 0)), "confidence is not a number from 0 up")
         self._refuse(none & (self.confidence > 0), "no hypothesis, but a confidence above 0")
         self._refuse(none & (self.correct | self.correct_metric), "no hypothesis, but marked right")

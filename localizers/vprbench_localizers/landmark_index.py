@@ -14,7 +14,7 @@ import numpy as np
 from jaxtyping import Float32, Int64
 
 from vprbench.errors import ConfigError
-from vprbench_localizers.unit_memory import View
+from vprbench_localizers.unit_activity import View
 
 __all__ = ["LandmarkIndex", "landmark_vectors", "require_faiss"]
 

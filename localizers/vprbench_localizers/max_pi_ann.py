@@ -18,7 +18,7 @@ from vprbench.types import Observation, Responses
 from vprbench_localizers.landmark_index import LandmarkIndex, landmark_vectors, require_faiss
 from vprbench_localizers.max_pi import MaxPi
 from vprbench_localizers.sparse_views import SparseViews
-from vprbench_localizers.unit_memory import View
+from vprbench_localizers.unit_activity import View
 
 __all__ = ["MaxPiAnn"]
 

@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 
 from vprbench.errors import PluginError
 from vprbench_localizers.growing import Growing
-from vprbench_localizers.unit_memory import View
+from vprbench_localizers.unit_activity import View
 
 __all__ = ["SparseViews"]
 

@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 from vprbench.errors import ConfigError
 from vprbench_localizers import landmark_index
 from vprbench_localizers.landmark_index import LandmarkIndex, landmark_vectors, require_faiss
-from vprbench_localizers.unit_memory import View
+from vprbench_localizers.unit_activity import View
 
 
 def random_vectors(seed: int, count: int) -> NDArray[np.float32]:

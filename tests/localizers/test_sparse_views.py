@@ -7,7 +7,7 @@ from hypothesis import strategies as st
 
 from vprbench.errors import PluginError
 from vprbench_localizers.sparse_views import SparseViews
-from vprbench_localizers.unit_memory import View
+from vprbench_localizers.unit_activity import View
 
 
 def view(seed: int, points: int, size: int = 7, empty: float = 0.6) -> View:
