@@ -2,26 +2,29 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
-from dataclasses import dataclass
+import json
+from collections.abc import Callable
+from dataclasses import dataclass, field, replace
+from math import log2
 from statistics import median
-from time import perf_counter
+from time import process_time
 from typing import Any
 
 import numpy as np
 
 from vprbench.agents import build, build_encoder, normalise
 from vprbench.catalogue import load_route
+from vprbench.encoder_key import encoder_key
 from vprbench.fitting import TrainingFrames, fit
 from vprbench.observation import Drive, observe
 from vprbench.pool import Settings
-from vprbench.protocols import DescriptorLocalizer, Localizer
+from vprbench.protocols import DescriptorLocalizer, Encoder, Localizer, Storable
 from vprbench.recruiting import HALVINGS
 from vprbench.route import Route
 from vprbench.sweep import Job
-from vprbench.types import Observation
+from vprbench.threads import one_thread
 
-__all__ = ["Estimate", "estimate"]
+__all__ = ["Estimate", "Estimator"]
 
 # Frames to measure.
 SAMPLE = 12
@@ -32,7 +35,7 @@ SHORT_STEP = 1e-3
 
 @dataclass(frozen=True)
 class Estimate:
-    """Work of one job.
+    """Work of one job, in the time of one processor: whatever else the machine does counts for nothing.
 
     Attributes:
         frames: frames to look at, training frames included; one that is played several times counts each time.
@@ -45,38 +48,94 @@ class Estimate:
     seconds: float
 
 
-def estimate(job: Job, settings: Settings) -> Estimate:
-    """Measure an agent on a few frames of its route.
+@dataclass(frozen=True)
+class _Measured:
+    """Work of a job but for its encoder's fit, and the seconds of that."""
 
-    Raises:
-        VprbenchError: the route's data are missing, or the agent cannot be built.
+    work: Estimate
+    fit_seconds: float
+
+
+@dataclass(frozen=True)
+class Estimator:
+    """Estimates the jobs of one sweep, in the order in which they are to run.
+
+    Jobs that differ in their seed alone take equally long, so one of them is measured. A fit is charged to the first
+    job that needs it, and to none where the store has it already.
     """
-    route = load_route(job.route, settings.data, settings.routes_file)
-    training = sum(len(drive) for drive in route.training)
+
+    settings: Settings
+    _measured: dict[str, _Measured] = field(default_factory=dict, init=False)
+    _fits: set[str] = field(default_factory=set, init=False)
+
+    def estimate(self, job: Job) -> Estimate:
+        """What a job takes, measured on a few frames of its route.
+
+        Raises:
+            VprbenchError: the route's data are missing, or the agent cannot be built.
+        """
+        route = load_route(job.route, self.settings.data, self.settings.routes_file)
+        config = normalise(job.config)
+        same = json.dumps([job.route, config, [cell.sampling_distance for cell in job.cells]])
+        if same not in self._measured:
+            with one_thread():
+                self._measured[same] = _measure(job, route)
+        work, fit_seconds = self._measured[same].work, self._measured[same].fit_seconds
+        return replace(work, seconds=work.seconds + fit_seconds) if self._must_fit(job, route) else work
+
+    def _must_fit(self, job: Job, route: Route) -> bool:
+        """Whether nobody has fitted this encoder before."""
+        config, store = normalise(job.config).get("encoder"), self.settings.store
+        if config is None or store is None:
+            return True
+        encoder = build_encoder(config, job.seed)
+        if not isinstance(encoder, Storable):
+            return True
+        key = encoder_key(config, job.seed, encoder, route.training)
+        known = key in self._fits or store.path(key).exists()
+        self._fits.add(key)
+        return not known
+
+
+def _measure(job: Job, route: Route) -> _Measured:
+    """Measure an agent on a few frames of its route."""
     for drive in (*route.training, route.learn, route.test):
         # Drawing or opening a drive takes time once, which must not be scaled up.
         observe(drive, 0)
-    started = perf_counter()
-    # Evenly spread frames, since a calibration may want places that lie apart.
-    samples = [Drive(drive)[:: max(1, len(drive) // SAMPLE)] for drive in route.training]
-    localizer = _fitted(job, samples)
-    fitting = (perf_counter() - started) * training / max(1, sum(map(len, samples)))
+    config = normalise(job.config).get("encoder")
+    encoder, fitting = (None, 0.0) if config is None else _fitted(lambda: build_encoder(config, job.seed), route)
+    localizer = build(job.config, job.seed, encoder)
+    started = process_time()
+    # Of all frames: how many of them a localizer takes is its own affair.
+    localizer.fit([Drive(drive) for drive in route.training])
+    calibrating = process_time() - started
     if isinstance(localizer, DescriptorLocalizer):
         work = _by_matrix(job, route, localizer)
     else:
         work = _by_playing(job, route, localizer)
-    return Estimate(work.frames + training, work.pairs, work.seconds + fitting)
+    training = sum(map(len, route.training))
+    return _Measured(Estimate(work.frames + training, work.pairs, work.seconds + calibrating), fitting)
 
 
-def _fitted(job: Job, drives: Sequence[Sequence[Observation]]) -> Localizer:
-    """The agent, fitted on so little that it is of no other use."""
-    table, encoder = normalise(job.config), None
-    if "encoder" in table:
-        encoder = build_encoder(table["encoder"], job.seed)
-        fit(encoder, TrainingFrames(drives))
-    localizer = build(job.config, job.seed, encoder)
-    localizer.fit(drives)
-    return localizer
+def _fitted(make: Callable[[], Encoder], route: Route) -> tuple[Encoder, float]:
+    """An encoder fitted on so little that it is of no other use, and the seconds that its whole fit takes.
+
+    Two fits, the second on twice the frames, tell by which power of their number the time grows: a part of it may
+    not depend on them, and a fit may have a last step whatever it is given.
+    """
+    taken, frames = [], []
+    # The first is not counted: it may compile.
+    for few in (SAMPLE // 2, SAMPLE // 2, SAMPLE):
+        sample = TrainingFrames([Drive(drive)[:: max(1, len(drive) // few)][:few] for drive in route.training])
+        encoder, started = make(), process_time()
+        fit(encoder, sample)
+        taken.append(process_time() - started)
+        frames.append(len(sample))
+    _, some, twice = taken
+    if not 0 < some < twice or frames[2] == frames[1]:
+        return encoder, twice
+    power = min(1.0, log2(twice / some) / log2(frames[2] / frames[1]))
+    return encoder, float(twice * (sum(map(len, route.training)) / frames[2]) ** power)
 
 
 def _by_matrix(job: Job, route: Route, localizer: DescriptorLocalizer[Any]) -> Estimate:
@@ -117,11 +176,11 @@ def _matrix_costs(route: Route, localizer: DescriptorLocalizer[Any]) -> tuple[fl
     picked = _picked(drive)
     described = [localizer.describe(drive[i]) for i in picked[:2]]
     localizer.compare(described, described)
-    started = perf_counter()
+    started = process_time()
     described = [localizer.describe(drive[i]) for i in picked]
-    middle = perf_counter()
+    middle = process_time()
     localizer.compare(described, described)
-    return (middle - started) / SAMPLE, (perf_counter() - middle) / SAMPLE**2
+    return (middle - started) / SAMPLE, (process_time() - middle) / SAMPLE**2
 
 
 def _playing_costs(route: Route, localizer: Localizer) -> tuple[float, float]:
@@ -141,9 +200,9 @@ def _answering(localizer: Localizer, drive: Drive) -> float:
     """Seconds to get and answer a frame, a typical one: a hiccup of the machine does not count."""
     taken = []
     for i in _picked(drive):
-        started = perf_counter()
+        started = process_time()
         localizer.respond(drive[i])
-        taken.append(perf_counter() - started)
+        taken.append(process_time() - started)
     return median(taken)
 
 

@@ -3,19 +3,24 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from pathlib import Path
 
 import numpy as np
 import pytest
+from jaxtyping import Float32
 
 from vprbench import estimate as module
-from vprbench.estimate import estimate
+from vprbench.encoder_store import EncoderStore
+from vprbench.estimate import Estimator
 from vprbench.pool import Settings
 from vprbench.protocols import Recruiting
 from vprbench.recruiting import Odometer
 from vprbench.route import Route
 from vprbench.runner import run
 from vprbench.sweep import Cell, Job
-from vprbench.types import Observation, Responses
+from vprbench.types import Frame, Landmarks, Observation, Responses
+
+Signatures = Float32[np.ndarray, "rows size"]
 
 JOB = Job("toy", "fake", 0, {"localizer": "fake"}, tuple(Cell("toy", "fake", float(d), 0) for d in (4, 8)))
 SECONDS_A_FRAME, SECONDS_A_PLACE = 3.0, 0.25
@@ -64,7 +69,7 @@ def fake(request: pytest.FixtureRequest, toy_route: Route, monkeypatch: pytest.M
         monkeypatch.setattr(f"{module_name}.build", lambda config, seed, encoder=None: made)
     for module_name in ("vprbench.estimate", "vprbench.runner"):
         monkeypatch.setattr(f"{module_name}.load_route", lambda *names, **paths: toy_route)
-    monkeypatch.setattr(module, "perf_counter", lambda: made.now)
+    monkeypatch.setattr(module, "process_time", lambda: made.now)
     monkeypatch.setattr("vprbench.runner.normalise", lambda config: config)
     monkeypatch.setattr("vprbench.runner.origins", lambda config: "", raising=False)
     return made
@@ -72,7 +77,7 @@ def fake(request: pytest.FixtureRequest, toy_route: Route, monkeypatch: pytest.M
 
 @pytest.mark.parametrize("fake", ["step"], indirect=True)
 def test_the_work_of_a_step_localizer_is_known_beforehand(fake: Fake) -> None:
-    said = estimate(JOB, Settings())
+    said = Estimator(Settings()).estimate(JOB)
     fake.fitted, fake.played, fake.now = 0, 0, 0.0
     outcomes = list(run(JOB))
     assert [outcome.row["error"] for outcome in outcomes] == ["", ""]
@@ -84,7 +89,7 @@ def test_the_work_of_a_step_localizer_is_known_beforehand(fake: Fake) -> None:
 
 @pytest.mark.parametrize("fake", ["vigilance"], indirect=True)
 def test_the_halvings_of_a_vigilance_are_counted(fake: Fake) -> None:
-    said = estimate(JOB, Settings())
+    said = Estimator(Settings()).estimate(JOB)
     # Of 41 learn and 30 test frames: 25 times learned, then recorded and tested, for two cells; 10 trained.
     assert said.frames == 2 * (25 * 41 + 41 + 30) + 10
     assert said.pairs == 0
@@ -92,3 +97,68 @@ def test_the_halvings_of_a_vigilance_are_counted(fake: Fake) -> None:
     list(run(JOB))
     assert 0.1 * said.frames < fake.played < said.frames
     assert 0.1 * said.seconds < fake.now
+
+
+class Learner:
+    """An encoder that takes `base` seconds by its own clock, times the square root of the frames, to learn."""
+
+    now = 0.0
+
+    def __init__(self, base: float) -> None:
+        self.base = base
+
+    def fit(self, frames: Sequence[Frame]) -> None:
+        Learner.now += self.base * len(frames) ** 0.5
+
+    def encode(self, frame: Frame) -> Landmarks:
+        return Landmarks(np.zeros((1, 1), np.float32), np.zeros((1, 2), np.float32))
+
+    def match(self, queries: Signatures, memory: Signatures) -> Signatures:
+        return np.ones((len(queries), len(memory)), np.float32)
+
+    def save(self, path: Path | str) -> None:
+        Path(path).write_text(str(self.base))
+
+    @classmethod
+    def load(cls, path: Path | str) -> Learner:
+        return cls(float(Path(path).read_text()))
+
+
+LEARNING = {"localizer": "fake", "encoder": {"name": "learner"}}
+
+
+def job(seed: int, agent: str = "one") -> Job:
+    return Job("toy", agent, seed, LEARNING, (Cell("toy", agent, 4.0, seed),))
+
+
+@pytest.fixture
+def learner(toy_route: Route, monkeypatch: pytest.MonkeyPatch) -> Route:
+    monkeypatch.setattr(module, "load_route", lambda *names, **paths: toy_route)
+    monkeypatch.setattr(module, "build_encoder", lambda config, seed: Learner(6.0))
+    monkeypatch.setattr(module, "build", lambda config, seed, encoder=None: Fake("step"))
+    monkeypatch.setattr(module, "encoder_key", lambda config, seed, encoder, training: f"learner-s{seed}")
+    monkeypatch.setattr(module, "process_time", lambda: Learner.now)
+    return toy_route
+
+
+def test_a_fit_is_charged_to_the_first_job_that_needs_it(learner: Route, tmp_path: Path) -> None:
+    store = EncoderStore(tmp_path)
+    tmp_path.joinpath("learner-s2.npz").touch()
+    estimator = Estimator(Settings(store=store))
+    seconds = [estimator.estimate(each).seconds for each in (job(0), job(0, "two"), job(1), job(2))]
+    whole = 6.0 * sum(map(len, learner.training)) ** 0.5
+    assert seconds == pytest.approx([whole, 0.0, whole, 0.0])
+
+
+def test_without_a_store_every_job_fits_anew(learner: Route) -> None:
+    estimator = Estimator(Settings())
+    first, second = (estimator.estimate(job(0, agent)).seconds for agent in ("one", "two"))
+    assert first == second > 0
+
+
+def test_jobs_that_differ_in_their_seed_alone_are_measured_once(learner: Route) -> None:
+    estimator = Estimator(Settings())
+    estimator.estimate(job(0))
+    before = Learner.now
+    estimator.estimate(job(1))
+    assert Learner.now == before

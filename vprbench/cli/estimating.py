@@ -9,7 +9,7 @@ from rich.markup import escape
 from rich.table import Table
 
 from vprbench.errors import VprbenchError
-from vprbench.estimate import estimate
+from vprbench.estimate import Estimator
 from vprbench.pool import Settings
 from vprbench.sweep import Job
 
@@ -22,9 +22,10 @@ def print_estimate(todo: Sequence[Job], settings: Settings, console: Console) ->
     for column in ("route / agent / seed", "cells", "frames", "frame pairs", "seconds"):
         table.add_column(column, justify="left" if column.startswith("route") else "right")
     total = longest = 0.0
+    estimator = Estimator(settings)
     for job in todo:
         try:
-            cost = estimate(job, settings)
+            cost = estimator.estimate(job)
         except VprbenchError as error:
             table.add_row(escape(str(job)), str(len(job.cells)), "", "", f"[red]{escape(str(error))}[/red]")
             continue
