@@ -27,6 +27,10 @@ def pytest_benchmark_update_machine_info(machine_info: dict[str, Any]) -> None:
     machine_info["versions"] = versions()
 
 
+def pytest_addoption(parser: pytest.Parser) -> None:
+    parser.addoption("--ann-places", default="1000,10000", help="sizes of the maps that test_ann.py grows, rising")
+
+
 class Drawn:
     """Frames kept in memory, so that no timing contains the drawing."""
 

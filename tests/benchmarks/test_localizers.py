@@ -3,7 +3,8 @@
 Group "locate one query" times those that find the best place without the response of every place, against all responses
 at the same turn: `extra_info["per_respond"]` is the ratio of the CPU times of both, over several queries.
 
-One that looks through an encoder is timed with each registered encoder.
+One that looks through an encoder is timed with each registered encoder; but with `ENCODER` alone where it has no
+`compare`: its learning cannot be hurried.
 """
 
 from __future__ import annotations
@@ -31,12 +32,15 @@ Agent: TypeAlias = dict[str, str]
 # As a vigilance and as a step in metres, 1 makes every frame a place that is far away and matches nothing.
 SAMPLING = 1.0
 
+ENCODER = "hsd-15-30"
+
 
 def agents() -> Iterator[Agent]:
     """Every localizer, with every encoder if it takes one."""
     for name, plugin in plugins("localizer").items():
-        if "encoder" in parameters(plugin.load()):
-            yield from ({"localizer": name, "encoder": encoder} for encoder in plugins("encoder"))
+        if "encoder" in parameters(factory := plugin.load()):
+            encoders = plugins("encoder") if hasattr(factory, "compare") else [ENCODER]
+            yield from ({"localizer": name, "encoder": encoder} for encoder in encoders)
         else:
             yield {"localizer": name}
 
