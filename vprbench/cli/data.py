@@ -17,7 +17,7 @@ data = typer.Typer(no_args_is_help=True, help="Check the data of routes, and fin
 @data.command(epilog="Example: vprbench data check KITTI-K0-2 --data ~/kitti --figures")
 def check(
     names: Annotated[
-        list[str] | None, typer.Argument(metavar="ROUTE...", help="Routes; by default all of the --routes file.")
+        list[str] | None, typer.Argument(metavar="ROUTE", help="Routes; by default all of the --routes file.")
     ] = None,
     data: Data = None,
     routes: Routes = None,
@@ -38,7 +38,10 @@ def check(
 def revisits(
     recording: Annotated[
         str,
-        typer.Argument(help="A KITTI sequence (00), a raw drive (2011_10_03_drive_0027), or a drive's CSV or folder."),
+        typer.Argument(
+            metavar="RECORDING",
+            help="A KITTI sequence (00), a raw drive (2011_10_03_drive_0027), or a drive's CSV or folder.",
+        ),
     ],
     data: Data = None,
     direction: Annotated[str, typer.Option(help="Of the second drive: same, reverse or both.")] = "same",

@@ -4,8 +4,6 @@ from __future__ import annotations
 
 import os
 import shutil
-import subprocess
-import sys
 from collections.abc import Callable
 from pathlib import Path
 from typing import Any
@@ -16,13 +14,12 @@ import pytest
 
 from vprbench.errors import DataError
 from vprbench.results import ResultTable
-from vprbench.runner import Outcome
-from vprbench.sweep import Cell
+from vprbench.runner import Outcome, run
+from vprbench.sweep import Cell, jobs, parse_sweep
 
 Tell = Callable[..., Any]
 Break = Callable[[Path], object]
 
-THIRD_PARTY = Path(__file__).parents[2] / "third_party"
 CSV, PARQUET, TRACE = "answers.csv", "answers.parquet", "answers.traces/Road/2m/one/s0.parquet"
 
 
@@ -149,16 +146,16 @@ def test_a_configuration_that_is_no_json_is_told(answers: Path, tell: Tell) -> N
     assert "agent_config '{bad' of the results is no JSON" in done.err
 
 
-def test_rows_that_were_measured_outlive_a_frame_that_breaks(answers: Path) -> None:
+def test_rows_that_were_measured_outlive_a_frame_that_breaks(answers: Path, tell: Tell) -> None:
+    """As a sweep takes them from its workers; `tell` knows where the agents are."""
     before = (answers / CSV).read_bytes()
     broken = answers / "day2" / "img" / "2.png"
     broken.write_bytes(broken.read_bytes()[:-20])
-    words = [sys.executable, "-m", "vprbench", "sweep", "answers.toml", "--out", ".", "--jobs", "1"]
-    environment = os.environ | {"PYTHONPATH": str(THIRD_PARTY), "COLUMNS": "200"}
-    done = subprocess.run(words, cwd=answers, env=environment, capture_output=True, text=True, timeout=600)
-    assert done.returncode == 1
-    assert f"one/s0  failed: DataError: {broken.relative_to(answers)}: the PNG is cut off; fetch" in done.stderr
-    assert "Traceback" not in done.stderr
+    sweep, table = parse_sweep(answers / "answers.toml"), ResultTable(answers, "answers")
+    for job in jobs(sweep, list(sweep.cells())):
+        for outcome in run(job, None, answers / "routes.toml"):
+            assert outcome.row["error"] == f"DataError: {broken}: the PNG is cut off; fetch the file again"
+            table.add(outcome)
     assert (answers / CSV).read_bytes() == before
 
 
