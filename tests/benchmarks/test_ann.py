@@ -31,7 +31,7 @@ from vprbench.protocols import Encoder
 from vprbench.route import Route
 from vprbench_localizers.max_pi import MaxPi
 from vprbench_localizers.max_pi_ann import MaxPiAnn
-from vprbench_localizers.unit_memory import View
+from vprbench_localizers.unit_activity import View
 
 BLOCK = 1000
 QUERIES = 20
