@@ -1,4 +1,4 @@
-"""How long each registered localizer takes to describe a frame, and to answer with 10, 100 and 1000 places.
+"""How long each registered localizer takes to describe a frame, to answer with 10, 100 and 1000 places, and to add one.
 
 One that looks through an encoder is timed with each registered encoder.
 """
@@ -7,7 +7,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterator
 from functools import cache
-from itertools import cycle
+from itertools import cycle, islice
 from typing import Any, TypeAlias
 
 import numpy as np
@@ -115,3 +115,16 @@ def test_respond(
     assert memory.localizer.respond(next(queries)).shape == (places,)
     benchmark.extra_info |= {**agent, "places": places}
     benchmark(lambda: memory.localizer.respond(next(queries)))
+
+
+@pytest.mark.benchmark(group="add one place to 1000")
+@pytest.mark.parametrize("agent", AGENTS, ids=label)
+def test_store(benchmark: BenchmarkFixture, memory: Memory, queries: Iterator[Observation], agent: Agent) -> None:
+    localizer = memory.localizer
+    if not isinstance(localizer, Storing):
+        pytest.skip("it cannot be given places outright")
+    memory.hold(1000)
+    described = cycle([localizer.describe(query) for query in islice(queries, 20)])
+    benchmark.extra_info |= agent
+    benchmark.pedantic(lambda: localizer.store(next(described)), rounds=500, warmup_rounds=5)  # type: ignore[no-untyped-call]
+    memory.places = len(localizer.respond(next(queries)))
