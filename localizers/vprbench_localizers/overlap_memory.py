@@ -11,7 +11,6 @@ from vprbench.types import Responses
 from vprbench_localizers.azimuth import turn
 from vprbench_localizers.growing import with_room
 from vprbench_localizers.posting_lists import (
-    BLOCK,
     SECTORS,
     Postings,
     empty_postings,
@@ -37,7 +36,7 @@ class OverlapMemory:
     """
 
     def __init__(self) -> None:
-        self._places = self._units = self._blocks = 0
+        self._places = self._units = self._entries = 0
         self._starts = np.zeros(1, np.int64)
         self._lengths, self._azimuths = np.empty((2, 0), np.float32)
         self._postings = empty_postings(0)
@@ -56,7 +55,7 @@ class OverlapMemory:
             self._reserve(end, view)
             _measure(view.signatures, self._lengths[first:end])
             self._azimuths[first:end] = view.azimuths
-            self._blocks = post(self._postings, self._blocks, view.signatures, view.azimuths, first)
+            self._entries = post(self._postings, self._entries, view.signatures, view.azimuths, first)
         self._units, self._places = end, self._places + 1
         self._starts = with_room(self._starts, self._places + 1, self._places)
         self._starts[self._places] = end
@@ -76,11 +75,10 @@ class OverlapMemory:
             self._postings = empty_postings(view.signatures.shape[1])
         self._must_have_size(view)
         self._lengths, self._azimuths = (with_room(a, units, self._units) for a in (self._lengths, self._azimuths))
-        most = self._blocks + int(np.count_nonzero(view.signatures)) + len(view.azimuths)
-        self._postings = with_room_for(self._postings, most, self._blocks)
+        self._postings = with_room_for(self._postings, self._entries, view.signatures, view.azimuths)
 
     def _must_have_size(self, view: View) -> None:
-        size, stored = view.signatures.shape[1], len(self._postings.newest) // 2
+        size, stored = view.signatures.shape[1], len(self._postings.starts) // 2
         if size != stored:
             raise PluginError(
                 f"the encoder gives signatures of {size} values, the places stored have {stored}:"
@@ -168,14 +166,12 @@ def _collect(
     count: int,
 ) -> int:
     """Add what the units of one list share with a value."""
-    block, entries = postings.newest[at], postings.filled[at]
-    while block >= 0:
-        units, values = postings.units[block], postings.values[block]
-        for entry in range(entries):
-            m = units[entry]
-            # Without a branch: whether a unit is met for the first time is a coin toss.
-            met[count] = m
-            count += common[m] == 0
-            common[m] += min(value, values[entry])
-        block, entries = postings.older[block], np.int32(BLOCK)
+    start, entries = postings.starts[at], postings.counts[at]
+    units, values = postings.units[start : start + entries], postings.values[start : start + entries]
+    for entry in range(entries):
+        m = units[entry]
+        # Without a branch: whether a unit is met for the first time is a coin toss.
+        met[count] = m
+        count += common[m] == 0
+        common[m] += min(value, values[entry])
     return count

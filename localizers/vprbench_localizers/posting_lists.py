@@ -1,7 +1,8 @@
 """Which units use a value and stand in a direction: lists that only ever grow at their end.
 
 A signature of n values is listed under each of its values that is not zero, positive and negative ones apart, in the
-sector that its azimuth lies in. A list is a chain of blocks, the newest first; all but the newest are full.
+sector that its azimuth lies in. A list lies in one piece, so that reading it never waits for where it goes on; one that
+is full moves to the end of all, with twice the room, and leaves its old place unused.
 """
 
 from __future__ import annotations
@@ -9,53 +10,54 @@ from __future__ import annotations
 from typing import NamedTuple
 
 import numpy as np
-from jaxtyping import Float32, Int32, UInt32
+from jaxtyping import Float32, Int64, UInt32
 from numba import njit
 from numpy.typing import NDArray
 
 from vprbench_localizers.growing import with_room
 
-__all__ = ["BLOCK", "SECTORS", "Postings", "empty_postings", "list_of", "post", "sector_of", "with_room_for"]
+__all__ = ["SECTORS", "Postings", "empty_postings", "list_of", "post", "sector_of", "with_room_for"]
 
 # Of 10 degrees each (our choice): finer ones are read less beyond the reach, but make more lists.
 SECTORS = 36
 
-# Entries of a block (our choice): longer ones wait less for memory, but leave more of it unused.
-BLOCK = 16
+# Entries for which a list has room at first (our choice).
+FIRST_ROOM = 4
 
 
 class Postings(NamedTuple):
-    """The lists, in rows as `list_of` says and columns by sector, and the blocks that they are made of.
+    """The lists, in rows as `list_of` says and columns by sector, and the entries that they are made of.
 
     Signatures of which every value is zero are listed as if they had a 1 at position n, where no other has anything.
 
     Shapes:
-        newest: int32 (2 n + 1, sectors), the first block of each list; -1 where it is empty.
-        filled: int32 (2 n + 1, sectors), how many entries that block has.
-        older: int32 (blocks,), the block that follows; -1 after the last.
-        units: uint32 (blocks, entries), who uses the value ...
-        values: float32 (blocks, entries), ... and its amount.
+        starts: int64 (2 n + 1, sectors), the first entry of each list.
+        counts: int64 (2 n + 1, sectors), how many entries it has ...
+        rooms: int64 (2 n + 1, sectors), ... and for how many there is room.
+        units: uint32 (entries,), who uses the value ...
+        values: float32 (entries,), ... and its amount.
     """
 
-    newest: Int32[np.ndarray, "lists sectors"]
-    filled: Int32[np.ndarray, "lists sectors"]
-    older: Int32[np.ndarray, " blocks"]
-    units: UInt32[np.ndarray, "blocks entries"]
-    values: Float32[np.ndarray, "blocks entries"]
+    starts: Int64[np.ndarray, "lists sectors"]
+    counts: Int64[np.ndarray, "lists sectors"]
+    rooms: Int64[np.ndarray, "lists sectors"]
+    units: UInt32[np.ndarray, " entries"]
+    values: Float32[np.ndarray, " entries"]
 
 
 def empty_postings(size: int) -> Postings:
     """Lists for signatures of so many values."""
-    lists = 2 * size + 1, SECTORS
-    newest, filled = np.full(lists, -1, np.int32), np.full(lists, BLOCK, np.int32)
-    older, units, values = np.empty(0, np.int32), np.empty((0, BLOCK), np.uint32), np.empty((0, BLOCK), np.float32)
-    return Postings(newest, filled, older, units, values)
+    starts, counts, rooms = np.zeros((3, 2 * size + 1, SECTORS), np.int64)
+    return Postings(starts, counts, rooms, np.empty(0, np.uint32), np.empty(0, np.float32))
 
 
-def with_room_for(postings: Postings, blocks: int, used: int) -> Postings:
-    """The same lists, of which `used` blocks are in use, with room for so many."""
-    grown = (with_room(array, blocks, used) for array in postings[2:])
-    return Postings(postings.newest, postings.filled, *grown)
+def with_room_for(
+    postings: Postings, used: int, signatures: Float32[np.ndarray, "rows size"], azimuths: Float32[np.ndarray, " rows"]
+) -> Postings:
+    """The same lists, which use so many entries, with room for what `post` may add."""
+    wanted = used + _most_added(postings, signatures, azimuths)
+    units, values = with_room(postings.units, wanted, used), with_room(postings.values, wanted, used)
+    return postings._replace(units=units, values=values)
 
 
 @njit(cache=True)
@@ -71,6 +73,19 @@ def list_of(position: int, value: np.float32) -> int:
 
 
 @njit(cache=True)
+def _most_added(postings: Postings, signatures: NDArray[np.float32], azimuths: NDArray[np.float32]) -> int:
+    """Entries that lists may need at their new places, if each value finds its own full."""
+    most = 0
+    for row in range(len(signatures)):
+        sector = sector_of(azimuths[row]) % SECTORS
+        most += 2 * max(postings.rooms[list_of(signatures.shape[1], np.float32(1)), sector], FIRST_ROOM)
+        for i in range(signatures.shape[1]):
+            if signatures[row, i] != 0:
+                most += 2 * max(postings.rooms[list_of(i, signatures[row, i]), sector], FIRST_ROOM)
+    return most
+
+
+@njit(cache=True)
 def post(
     postings: Postings,
     used: int,
@@ -78,7 +93,7 @@ def post(
     azimuths: NDArray[np.float32],
     first: int,
 ) -> int:
-    """List signatures as those of the units from `first` on; how many blocks are now in use, at most one an entry."""
+    """List signatures as those of the units from `first` on; how many entries are then in use, or were left behind."""
     size = signatures.shape[1]
     for row in range(len(signatures)):
         sector = sector_of(azimuths[row]) % SECTORS
@@ -96,11 +111,12 @@ def post(
 
 @njit(cache=True)
 def _append(postings: Postings, used: int, at: tuple[int, int], unit: int, amount: np.float32) -> int:
-    block, entry = postings.newest[at], postings.filled[at]
-    if entry == BLOCK:
-        postings.older[used] = block
-        block, entry, used = np.int32(used), np.int32(0), used + 1
-        postings.newest[at] = block
-    postings.units[block, entry], postings.values[block, entry] = unit, amount
-    postings.filled[at] = entry + 1
+    start, count, room = postings.starts[at], postings.counts[at], postings.rooms[at]
+    if count == room:
+        postings.units[used : used + count] = postings.units[start : start + count]
+        postings.values[used : used + count] = postings.values[start : start + count]
+        start, room = used, max(2 * room, FIRST_ROOM)
+        postings.starts[at], postings.rooms[at], used = start, room, used + room
+    postings.units[start + count], postings.values[start + count] = unit, amount
+    postings.counts[at] = count + 1
     return used

@@ -1,4 +1,4 @@
-"""How long each registered localizer takes to describe a frame, and to answer with 10, 100 and 1000 places.
+"""How long each registered localizer takes to describe a frame, to answer with 10, 100 and 1000 places, and to add one.
 
 Group "locate one query" times those that find the best place without the response of every place, against all responses
 at the same turn: `extra_info["per_respond"]` is the ratio of the CPU times of both, over several queries.
@@ -11,7 +11,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterator
 from functools import cache
-from itertools import cycle
+from itertools import cycle, islice
 from time import process_time
 from typing import Any, TypeAlias
 
@@ -150,3 +150,16 @@ def cpu(answer: Callable[[Observation], object], queries: list[Observation]) -> 
     for query in queries:
         answer(query)
     return process_time() - started
+
+
+@pytest.mark.benchmark(group="add one place to 1000")
+@pytest.mark.parametrize("agent", AGENTS, ids=label)
+def test_store(benchmark: BenchmarkFixture, memory: Memory, queries: Iterator[Observation], agent: Agent) -> None:
+    localizer = memory.localizer
+    if not isinstance(localizer, Storing):
+        pytest.skip("it cannot be given places outright")
+    memory.hold(1000)
+    described = cycle([localizer.describe(query) for query in islice(queries, 20)])
+    benchmark.extra_info |= agent
+    benchmark.pedantic(lambda: localizer.store(next(described)), rounds=500, warmup_rounds=5)  # type: ignore[no-untyped-call]
+    memory.places = len(localizer.respond(next(queries)))
