@@ -9,6 +9,7 @@ import typer
 
 from vprbench.cli.arguments import Data, Routes
 from vprbench.cli.data import data
+from vprbench.cli.results_commands import claims, compare, report, score, table
 
 __all__ = [
     "app",
@@ -207,64 +208,11 @@ def scale(
     raise typer.Exit(scale_command(request))
 
 
-@app.command(epilog="Example: vprbench table runs/streets.csv --columns route --metric auc_all --format latex")
-def table(
-    results: Annotated[Path, typer.Argument(help="The .csv or .parquet of a sweep.")],
-    rows: Annotated[str, typer.Option(help="Column of the results to list downwards.")] = "agent",
-    columns: Annotated[str, typer.Option(help="Column of the results to list across.")] = "sampling_distance_m",
-    metric: Annotated[str, typer.Option(help="Which score; any numeric column.")] = "auc",
-    format: Annotated[str, typer.Option(help="terminal, markdown, latex or csv.")] = "terminal",
-) -> None:
-    """Pivot a result table: means, standard deviations and intervals, the best in bold."""
-    from vprbench.cli.reading import table_command
-
-    table_command(results, rows, columns, metric, format)
-
-
-@app.command(epilog="Example: vprbench compare runs/streets.csv --metric auc_all --reference LPMP")
-def compare(
-    results: Annotated[Path, typer.Argument(help="The .csv or .parquet of a sweep, its traces beside it.")],
-    metric: Annotated[str, typer.Option(help="auc, auc_all or accuracy; with _metric by the metric rule.")] = "auc_all",
-    reference: Annotated[str | None, typer.Option(help="The agent to compare with. Default: each with each.")] = None,
-    format: Annotated[str, typer.Option(help="terminal, markdown, latex or csv.")] = "terminal",
-) -> None:
-    """Say which agents differ: paired differences on the same queries, with intervals, from the stored answers."""
-    from vprbench.cli.comparing import compare_command
-
-    compare_command(results, metric, reference, format)
-
-
-@app.command(epilog="Example: vprbench claims runs --format markdown")
-def claims(
-    folder: Annotated[Path, typer.Argument(help="Folder of auc-hsd.csv, global.csv, fit.csv, ...")] = Path("runs"),
-    data: Data = None,
-    format: Annotated[str, typer.Option(help="terminal, markdown, latex or csv.")] = "terminal",
-) -> None:
-    """Judge the paper's claims by what was measured: supported, not supported, or not testable on the data present.
-
-    Takes the sweeps auc-hsd and global with their traces, fit.csv with fit-timings.json, and frequency.csv; what is
-    not there leaves its claims untested. The roads' own figures come from KITTI's pose files.
-    """
-    from vprbench.cli.claiming import claims_command
-
-    claims_command(folder, data, format)
-
-
-@app.command(epilog="Example: vprbench report runs/streets.csv")
-def report(
-    results: Annotated[Path, typer.Argument(help="The .csv or .parquet of a sweep.")],
-    out: Annotated[Path | None, typer.Option(help="Folder of the report. Default: NAME.report beside it.")] = None,
-    data: Data = None,
-    routes: Routes = None,
-) -> None:
-    """Write a report of a sweep: one page with tables, curves, maps and frames, which opens in any browser.
-
-    Leaves OUT/report.html, which needs no other file, and what is in it for use elsewhere: OUT/figures/ (PNG and SVG)
-    and OUT/tables/ (Markdown, LaTeX and CSV). Frames are shown of the routes whose data are present.
-    """
-    from vprbench.cli.reporting import report_command
-
-    report_command(results, out, data, routes)
+app.command(epilog="Example: vprbench table runs/streets.csv --columns route --metric auc_all --format latex")(table)
+app.command(epilog="Example: vprbench compare runs/streets.csv --metric auc_all --reference LPMP")(compare)
+app.command(epilog="Example: vprbench claims runs --format markdown")(claims)
+app.command(epilog="Example: vprbench report runs/streets.csv")(report)
+app.command(epilog="Example: vprbench score runs/streets.csv")(score)
 
 
 @app.command(epilog="Example: vprbench reproduce reconstruction auc-hsd --data ~/kitti")
@@ -302,19 +250,6 @@ def list_(
     from vprbench.cli.listing import list_command
 
     list_command(what, data, routes)
-
-
-@app.command(epilog="Example: vprbench score runs/streets.csv")
-def score(
-    results: Annotated[Path, typer.Argument(help="The .csv of a sweep, or one trace (.parquet).")],
-) -> None:
-    """Compute the metrics and their intervals again from the stored answers, and compare them with the table.
-
-    Exit code 1 where they differ, or where a stored answer is missing.
-    """
-    from vprbench.cli.reading import score_command
-
-    raise typer.Exit(score_command(results))
 
 
 @app.command(epilog="Example: vprbench check log-polar")
