@@ -151,7 +151,7 @@ def test_a_raw_drive_is_read_from_its_fixes(raw_tree: Path, tell: Tell) -> None:
         (["nowhere"], "nowhere: no recording; name a KITTI sequence (00), a raw drive"),
         (["00", "--direction", "revers"], "did you mean 'reverse'?"),
         (["09"], "dataset/poses/09.txt: cannot be read (No such file or directory)"),
-        (["2011_10_03_drive_0099"], "no fixes of a drive; Unzip the [synced+rectified data]"),
+        (["2011_10_03_drive_0099"], "no fixes of a drive; its [synced+rectified data] belong there"),
     ],
 )
 def test_what_cannot_be_searched_is_told(tmp_path: Path, tell: Tell, words: list[str], said: str) -> None:

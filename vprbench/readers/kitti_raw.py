@@ -86,7 +86,8 @@ class RawDrive:
         """All frames that have a fix; DataError where there are none."""
         numbers = sorted(int(path.stem) for path in (self.folder / "oxts" / "data").glob("[0-9]*.txt"))
         if len(numbers) < 2:
-            raise DataError(f"{self.folder / 'oxts' / 'data'}: no fixes of a drive; {self.need([0, 1]).remedy}")
+            missing = "no fixes of a drive; its [synced+rectified data] belong there"
+            raise DataError(f"{self.folder / 'oxts' / 'data'}: {missing}")
         return FrameRun(self.name, numbers[0], numbers[-1])
 
     def motion(self, run: FrameRun) -> Motion:

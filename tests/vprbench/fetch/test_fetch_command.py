@@ -8,6 +8,7 @@ import shutil
 import signal
 import zipfile
 from pathlib import Path
+from time import sleep
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -87,6 +88,7 @@ def test_an_interrupted_fetch_goes_on(world: World, tell: Tell) -> None:
     def interrupt(handler: Handler, start: int, stop: int) -> bool:
         if len(handler.server.log) == 8:
             os.kill(os.getpid(), signal.SIGINT)
+            sleep(0.2)  # the answer must not overtake the signal
         return False
 
     world.server.fault = interrupt
