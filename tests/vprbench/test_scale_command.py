@@ -72,7 +72,12 @@ def test_sizes_become_rows_until_a_limit_stops_the_agent(scale: Run) -> None:
     for row in rows():
         if not row["stopped"]:
             assert 0 < float(row["query_ms_q1"]) <= float(row["query_ms"]) <= float(row["query_ms_q3"])
-            assert min(float(row[name]) for name in ("bytes_per_place", "add_ms", "learn_ms", "respond_ms")) > 0
+            assert (
+                min(
+                    float(row[name]) for name in ("bytes_per_place", "add_ms", "learn_ms", "respond_ms", "query_cpu_ms")
+                )
+                > 0
+            )
             assert row["queries"] == "3"
     stamp = json.loads(Path("out/scale.json").read_text())
     assert {"processor", "cores", "commit"} <= stamp["machine"].keys()

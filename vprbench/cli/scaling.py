@@ -123,11 +123,11 @@ def _to_terminal(table: pd.DataFrame) -> Group:
     """Each agent's sizes, and what stopped it."""
     drawn = Table(box=box.SIMPLE_HEAD, pad_edge=False)
     drawn.add_column("agent")
-    for head in ("places", "query, ms", "respond, ms", "kB a place", "add, ms", "learn, ms"):
+    for head in ("places", "query, ms", "of it CPU", "respond, ms", "kB a place", "add, ms", "learn, ms"):
         drawn.add_column(head, justify="right")
     timed, stops = table[table["stopped"] == ""], table[table["stopped"] != ""]
     shown = timed.assign(kilobytes=timed["bytes_per_place"] / 1e3)
-    shown = shown[["query_ms", "respond_ms", "kilobytes", "add_ms", "learn_ms"]]
+    shown = shown[["query_ms", "query_cpu_ms", "respond_ms", "kilobytes", "add_ms", "learn_ms"]]
     for agent, places, values in zip(timed["agent"], timed["places"], shown.to_numpy(float), strict=True):
         drawn.add_row(Text(agent), str(places), *(f"{value:.3g}" for value in values))
     said = (f"{row.agent} stops: {row.places} places {row.stopped}" for row in stops.itertuples())

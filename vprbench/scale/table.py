@@ -28,6 +28,7 @@ COLUMNS = (
     "query_ms",
     "query_ms_q1",
     "query_ms_q3",
+    "query_cpu_ms",
     "encode_ms",
     "respond_ms",
     "respond_ms_q1",
@@ -46,7 +47,8 @@ RULES = {
     "another",
     "queries": "frames of the test drive, each under the heading of a place drawn by chance; each is asked once "
     "before, uncounted",
-    "ms": "by the clock on the wall; query and respond are medians over queries between the quartiles (_q1, _q3)",
+    "ms": "by the clock on the wall; query and respond are medians over queries between the quartiles (_q1, _q3); "
+    "query_cpu likewise of CPU time: where it is far below, others had the processor",
     "encode": "the encoder's encode, called by itself; of a localizer without encoder, its describe",
     "respond": "respond with the landmarks at hand; without an encoder, query less encode",
     "bytes_per_place": "of all that the localizer holds more than without places, with what arrays keep free",
@@ -87,6 +89,7 @@ def _row(agent: str, route: str, size: Size) -> dict[str, Any]:
     return {
         **identity,
         **times,
+        "query_cpu_ms": 1e3 * np.median([visit.query.cpu for visit in size.visits]),
         "encode_ms": np.median(encode),
         "bytes_per_place": size.held / size.places,
         "add_ms": 1e3 * size.added,
