@@ -45,6 +45,8 @@ class Encoder(Protocol):
     - `matches_by_overlap`: whether `match` is 2 sum of shares / (L1(a) + L1(b)), in float32 from the first value to the
       last, where two values share the smaller if both have one sign; and 1 of two rows of zeros. Then a localizer
       matches by itself, and looks only at signatures that have something in common.
+    - `matches_bytes`: whether its signatures lie in 0..1, and `match_pairs`, as `sketch` if it matches by sketch, also
+      take them as uint8, in 255ths of 1. Then a localizer can keep four times as many.
     """
 
     def fit(self, frames: Sequence[Frame]) -> None:

@@ -6,7 +6,7 @@ from collections.abc import Sequence
 from functools import partial
 
 import numpy as np
-from jaxtyping import Float32, Int64
+from jaxtyping import Float32, Int64, UInt8
 from numba import njit
 from numpy.typing import NDArray
 
@@ -121,7 +121,7 @@ class LogPolar:
     """The LPMP signature: a log-polar map of the gradient around each focus point, scaled to 0..1.
 
     Nothing is learned. With `size` below 54 the same map is area-averaged to size x size: the control that tells
-    what compression alone buys. Alike = 1 - mean |x - w|.
+    what compression alone buys. Alike = 1 - mean |x - w|. Pairs of maps of bytes, 255ths of 1, are compared too.
 
     Args:
         size: rows and columns of the signature, 1..54; 54 is the paper's.
@@ -129,6 +129,8 @@ class LogPolar:
         outer_radius: of the last row, px (our choice).
         alpha, sigmas, points, radius, margin, floor: of the focus points; see `FocusDetector`.
     """
+
+    matches_bytes = True
 
     def __init__(
         self,
@@ -172,8 +174,8 @@ class LogPolar:
 
     def match_pairs(
         self,
-        queries: Float32[np.ndarray, "points size"],
-        memory: Float32[np.ndarray, "units size"],
+        queries: Float32[np.ndarray, "points size"] | UInt8[np.ndarray, "points size"],
+        memory: Float32[np.ndarray, "units size"] | UInt8[np.ndarray, "units size"],
         query_index: Int64[np.ndarray, " pairs"],
         memory_index: Int64[np.ndarray, " pairs"],
     ) -> Float32[np.ndarray, " pairs"]:
@@ -185,10 +187,13 @@ class LogPolar:
         """Whether maps are so large that comparing smaller ones first is worth it."""
         return self.size == SAMPLES
 
-    def sketch(self, signatures: Float32[np.ndarray, "rows 2916"]) -> Float32[np.ndarray, "rows 162"]:
+    def sketch(
+        self, signatures: Float32[np.ndarray, "rows 2916"] | UInt8[np.ndarray, "rows 2916"]
+    ) -> Float32[np.ndarray, "rows 162"]:
         """The maps, averaged over areas: they differ by no more than what they are the means of."""
         rows, columns = self._sketch_weights
-        maps = signatures.reshape(len(signatures), SAMPLES, SAMPLES)
+        values = signatures / np.float32(255) if signatures.dtype == np.uint8 else signatures
+        maps = values.reshape(len(values), SAMPLES, SAMPLES)
         return (rows @ maps @ columns.T).reshape(len(maps), rows.shape[0] * columns.shape[0])
 
     def match_at_most(

@@ -6,12 +6,12 @@ from itertools import pairwise
 from typing import Protocol, runtime_checkable
 
 import numpy as np
-from jaxtyping import Float32, Int64
+from jaxtyping import Float32, Int64, UInt8
 
 from vprbench.protocols import Encoder
 from vprbench_localizers.unit_memory import Units
 
-__all__ = ["OverlapEncoder", "PairEncoder", "PairMatcher", "SketchingEncoder", "pair_matcher"]
+__all__ = ["ByteEncoder", "OverlapEncoder", "PairEncoder", "PairMatcher", "SketchingEncoder", "pair_matcher"]
 
 
 @runtime_checkable
@@ -66,12 +66,24 @@ class OverlapEncoder(Encoder, Protocol):
     matches_by_overlap: bool
 
 
+@runtime_checkable
+class ByteEncoder(PairEncoder, Protocol):
+    """An encoder that can compare signatures of one byte a value: optional.
+
+    Attributes:
+        matches_bytes: whether its signatures lie in 0..1, and `match_pairs`, as `sketch` if it matches by sketch, also
+            take them as uint8, in 255ths of 1.
+    """
+
+    matches_bytes: bool
+
+
 class PairMatcher(Protocol):
     """How alike each pair (queries[query_index[i]], units.signatures[unit_index[i]]) is."""
 
     def __call__(
         self,
-        queries: Float32[np.ndarray, "points size"],
+        queries: Float32[np.ndarray, "points size"] | UInt8[np.ndarray, "points size"],
         units: Units,
         query_index: Int64[np.ndarray, " pairs"],
         unit_index: Int64[np.ndarray, " pairs"],

@@ -8,7 +8,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from math import inf, isfinite, radians
-from typing import ClassVar
+from typing import ClassVar, get_args
 
 import numpy as np
 from jaxtyping import Float32
@@ -19,6 +19,7 @@ from vprbench.types import Observation, Responses
 from vprbench_localizers.azimuth import azimuths
 from vprbench_localizers.calibration import Calibration
 from vprbench_localizers.memory import memory_for
+from vprbench_localizers.storage import Storage, can_store, in_bytes
 from vprbench_localizers.unit_activity import Rule, View
 
 __all__ = ["MaxPi"]
@@ -46,6 +47,9 @@ class MaxPi:
         recognition_percentile: of the matches between training places that `fit` takes (our choice).
         different_places: two training frames of one drive further apart than this differ, metres (our choice).
         calibration_frames: at most so many training frames are compared (our choice).
+        storage: of signatures, those of places and of queries alike: "float32", or "uint8", which rounds each value
+            to a 255th and takes a quarter of the memory; for encoders that have `matches_bytes`. A response
+            then differs by at most 1 / 255 / (1 - recognition threshold); see docs/performance.md.
 
     Raises:
         ConfigError: an option is out of its range; or a frame without a heading, unless all azimuths agree.
@@ -64,6 +68,7 @@ class MaxPi:
         recognition_percentile: float = 90.0,
         different_places: float = 25.0,
         calibration_frames: int = 60,
+        storage: Storage = "float32",
     ) -> None:
         width = inf if azimuth_width_deg is None else azimuth_width_deg
         _require(isinstance(encoder, Encoder), "encoder must have fit, encode and match", encoder)
@@ -71,7 +76,10 @@ class MaxPi:
         _require(azimuth_reach > 0, "azimuth_reach must be above 0", azimuth_reach)
         given = recognition_threshold
         _require(given is None or 0 <= given < 1, "recognition_threshold must be at least 0 and below 1", given)
-        self.encoder = encoder
+        _require(storage in get_args(Storage), f"storage must be one of {', '.join(get_args(Storage))}", storage)
+        asked = "storage must be 'float32' with an encoder that does not match bytes (log-polar does)"
+        _require(can_store(storage, encoder), asked, storage)
+        self.encoder, self.storage = encoder, storage
         self.recognition_threshold = recognition_threshold
         self._calibration = Calibration(recognition_percentile, different_places, calibration_frames)
         self._calibrate = given is None
@@ -111,7 +119,8 @@ class MaxPi:
         """The signatures and azimuths of one observation's landmarks."""
         landmarks = self.encoder.encode(observation["frame"])
         columns, camera = landmarks.points[:, 0], observation["camera"]
-        return View(landmarks.signatures, azimuths(columns, self._heading(observation), camera))
+        signatures = in_bytes(landmarks.signatures) if self.storage == "uint8" else landmarks.signatures
+        return View(signatures, azimuths(columns, self._heading(observation), camera))
 
     def compare(self, queries: Sequence[View], places: Sequence[View]) -> Float32[np.ndarray, "queries places"]:
         """Response of a place stored as each of `places` to each of `queries`: bitwise what `respond` gives."""

@@ -5,7 +5,7 @@ from __future__ import annotations
 from typing import NamedTuple
 
 import numpy as np
-from jaxtyping import Float32
+from jaxtyping import Float32, UInt8
 from numba import njit
 from numpy.typing import NDArray
 
@@ -18,11 +18,11 @@ class View(NamedTuple):
     """What a place stores, and a query shows: its landmarks' signatures and azimuths.
 
     Shapes and units:
-        signatures: float32 (points, size).
+        signatures: float32 (points, size); or uint8, in 255ths of 1.
         azimuths: float32 (points,), radians in -pi..pi.
     """
 
-    signatures: Float32[np.ndarray, "points size"]
+    signatures: Float32[np.ndarray, "points size"] | UInt8[np.ndarray, "points size"]
     azimuths: Float32[np.ndarray, " points"]
 
 

@@ -3,10 +3,11 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
-from jaxtyping import Float32, Int64
+from jaxtyping import Float32, Int64, UInt8
+from numpy.typing import NDArray
 
 from vprbench.errors import PluginError
 from vprbench_localizers.growing import with_room
@@ -19,12 +20,12 @@ class Units(NamedTuple):
     """The units of some places in a row.
 
     Shapes and units:
-        signatures: float32 (units, size).
+        signatures: float32 or uint8 (units, size), as in the views stored.
         azimuths: float32 (units,), radians in -pi..pi.
         starts: int64 (places + 1,), the first unit of each place, and the end of the last.
     """
 
-    signatures: Float32[np.ndarray, "units size"]
+    signatures: Float32[np.ndarray, "units size"] | UInt8[np.ndarray, "units size"]
     azimuths: Float32[np.ndarray, " units"]
     starts: Int64[np.ndarray, " places_and_end"]
 
@@ -39,7 +40,7 @@ class UnitMemory:
     def __init__(self) -> None:
         self.units = 0
         self._starts = [0]
-        self._signatures = np.empty((0, 0), np.float32)
+        self._signatures: NDArray[Any] = np.empty((0, 0), np.float32)
         self._azimuths = np.empty(0, np.float32)
 
     @property
@@ -48,7 +49,7 @@ class UnitMemory:
         return np.array(self._starts, np.int64)
 
     @property
-    def signatures(self) -> Float32[np.ndarray, "units size"]:
+    def signatures(self) -> Float32[np.ndarray, "units size"] | UInt8[np.ndarray, "units size"]:
         """Signature of each unit; a view that the next `add` may leave behind."""
         return self._signatures[: self.units]
 
@@ -76,16 +77,17 @@ class UnitMemory:
         """
         end = self.units + len(view.azimuths)
         if end > self.units:
-            self._reserve(end, view.signatures.shape[1])
+            self._reserve(end, view)
             self._signatures[self.units : end] = view.signatures
             self._azimuths[self.units : end] = view.azimuths
         self.units = end
         self._starts.append(end)
         return len(self) - 1
 
-    def _reserve(self, units: int, size: int) -> None:
+    def _reserve(self, units: int, view: View) -> None:
+        size = view.signatures.shape[1]
         if not self.units:
-            self._signatures = np.empty((0, size), np.float32)
+            self._signatures = np.empty((0, size), view.signatures.dtype)
         elif size != self._signatures.shape[1]:
             raise PluginError(
                 f"the encoder gives signatures of {size} values, the places stored have {self._signatures.shape[1]}:"

@@ -140,6 +140,23 @@ def test_chosen_pairs_match_bitwise_as_all_pairs_do() -> None:
     )
 
 
+@settings(max_examples=20, deadline=None)
+@given(seed=st.integers(0, 2**32 - 1), size=st.sampled_from([1, 36, 81, 2916]))
+def test_maps_of_bytes_match_by_their_whole_numbers(seed: int, size: int) -> None:
+    rng = np.random.default_rng(seed)
+    queries, memory = (rng.integers(0, 256, (rows, size), np.uint8) for rows in (5, 7))
+    p, m = rng.integers(0, 5, 30), rng.integers(0, 7, 30)
+    difference = cdist(queries, memory, "cityblock")[p, m].astype(np.float32)
+    found = LogPolar().match_pairs(queries, memory, p, m)
+    np.testing.assert_array_equal(found, np.float32(1) - difference / np.float32(255 * size))
+
+
+def test_black_and_white_maps_of_bytes_have_nothing_in_common() -> None:
+    black, white, first = np.zeros((1, 2916), np.uint8), np.full((1, 2916), 255, np.uint8), np.zeros(1, np.int64)
+    for one, other, match in ((black, white, 0.0), (white, black, 0.0), (white, white, 1.0)):
+        assert LogPolar().match_pairs(one, other, first, first) == match
+
+
 @settings(max_examples=30, deadline=None)
 @given(seed=st.integers(0, 2**32 - 1), blend=st.floats(0.0, 1.0), shift=st.floats(0.0, 0.5))
 def test_no_match_exceeds_what_sketches_allow(seed: int, blend: float, shift: float) -> None:

@@ -63,6 +63,25 @@ def _matches_at_most_what_sketches_say(subject: EncoderSubject) -> None:
 
 
 @matching_suite.add
+def _matches_bytes_if_it_says_so(subject: EncoderSubject) -> None:
+    if not getattr(subject.encoder, "matches_bytes", False):
+        raise DoesNotApply("it does not say that it matches bytes, which is optional")
+    compare = _offered(subject, "match_pairs")
+    (one, other, p, m), _ = _pairs(subject)
+    inside = all(rows.min(initial=0) >= 0 and rows.max(initial=1) <= 1 + ROUNDING for rows in (one, other))
+    expect(inside, "signatures lie in 0..1 where matches_bytes says that bytes can stand for them")
+    kept = [np.rint(255 * rows).astype(np.uint8) for rows in (one, other)]
+    found, meant = compare(*kept, p, m), compare(*(rows / np.float32(255) for rows in kept), p, m)
+    asked = found.dtype == np.float32 and np.allclose(found, meant, atol=ROUNDING)
+    expect(asked, "match_pairs gives float32 of bytes, as of the same values in 255ths of 1")
+    same = np.array_equal(compare(*kept, p[:1], m[:1]), found[:1])
+    expect(same, "a pair of bytes has the same match, to the bit, whichever pairs stand beside it")
+    if getattr(subject.encoder, "matches_by_sketch", False):
+        bounds = subject.encoder.match_at_most(*map(subject.encoder.sketch, kept), p, m)  # type: ignore[attr-defined]
+        expect(bool((bounds >= found).all()), "match_at_most of sketches of bytes is no less than match_pairs gives")
+
+
+@matching_suite.add
 def _matches_by_overlap_if_it_says_so(subject: EncoderSubject) -> None:
     if not getattr(subject.encoder, "matches_by_overlap", False):
         raise DoesNotApply("it does not say that it matches by overlap, which is optional")

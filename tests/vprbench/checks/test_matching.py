@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import numpy.typing as npt
@@ -12,6 +13,7 @@ import pytest
 from vprbench.agents import build_encoder
 from vprbench.checks import DoesNotApply, encoder_checks
 from vprbench.protocols import Encoder
+from vprbench.types import Frame, Landmarks
 
 THIRD_PARTY = Path(__file__).parents[2] / "third_party"
 
@@ -44,6 +46,45 @@ class Good:
 
     def match_at_most(self, queries: Signatures, memory: Signatures, p: Indices, m: Indices) -> Signatures:
         return np.float32(1 + 1e-6) - np.abs(queries[p] - memory[m])[:, 0]
+
+
+class TakesBytes(Good):
+    """The same, also of bytes."""
+
+    matches_bytes = True
+
+    def match_pairs(self, queries: Signatures, memory: Signatures, p: Indices, m: Indices) -> Signatures:
+        return super().match_pairs(self.values(queries), self.values(memory), p, m)
+
+    def sketch(self, signatures: Signatures) -> Signatures:
+        return super().sketch(self.values(signatures))
+
+    def values(self, signatures: npt.NDArray[Any]) -> Signatures:
+        return signatures.astype(np.float32) / np.float32(255 if signatures.dtype == np.uint8 else 1)
+
+
+class TakesBytesForWhole(TakesBytes):
+    matches_by_sketch = False
+
+    def values(self, signatures: npt.NDArray[Any]) -> Signatures:
+        return signatures.astype(np.float32)
+
+
+class SketchesBytesAsTheyAre(TakesBytes):
+    def sketch(self, signatures: Signatures) -> Signatures:
+        return signatures.mean(axis=1, keepdims=True, dtype=np.float32)
+
+
+class TakesBytesButIsAboveOne(TakesBytes):
+    matches_by_sketch = False
+
+    def __init__(self) -> None:
+        super().__init__()
+        self.encode = self.brighter
+
+    def brighter(self, frame: Frame) -> Landmarks:
+        signatures, points = self.good.encode(frame)
+        return Landmarks(signatures + np.float32(1), points)
 
 
 class SwapsTheIndices(Good):
@@ -118,7 +159,7 @@ def failing(factory: Callable[[], Encoder]) -> set[str]:
     return failed
 
 
-@pytest.mark.parametrize("good", [Good, Overlaps])
+@pytest.mark.parametrize("good", [Good, TakesBytes, Overlaps])
 def test_good_ones_pass(good: Callable[[], Encoder]) -> None:
     assert failing(good) == set()
 
@@ -130,6 +171,9 @@ def test_good_ones_pass(good: Callable[[], Encoder]) -> None:
         (ScalesByTheBest, "match-pairs-gives-what-match-gives"),
         (BoundsTooTightly, "matches-at-most-what-sketches-say"),
         (FearsToSketchNothing, "matches-at-most-what-sketches-say"),
+        (TakesBytesForWhole, "matches-bytes-if-it-says-so"),
+        (SketchesBytesAsTheyAre, "matches-bytes-if-it-says-so"),
+        (TakesBytesButIsAboveOne, "matches-bytes-if-it-says-so"),
         (OverlapsRoughly, "matches-by-overlap-if-it-says-so"),
         (KnowsNoSign, "matches-by-overlap-if-it-says-so"),
         (SharesNothingWhereThereIsNothing, "matches-by-overlap-if-it-says-so"),
