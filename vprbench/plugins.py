@@ -3,8 +3,10 @@
 from __future__ import annotations
 
 import inspect
+import sys
 from collections.abc import Callable
 from dataclasses import dataclass, replace
+from functools import cache
 from importlib.metadata import EntryPoint, entry_points
 from typing import Literal
 
@@ -80,19 +82,23 @@ class Plugin:
 
 
 def plugins(kind: Kind) -> dict[str, Plugin]:
-    """Every offered plug-in of a kind, sorted by name; nothing is imported, so none can break the list."""
+    """Every offered plug-in of a kind, sorted by name; nothing is imported, so none can break the list.
+
+    The distributions are read once for each search path: one that is installed later is seen by the next process.
+    """
     offered: dict[str, Plugin] = {}
-    for plugin in sorted(_offers(kind), key=lambda plugin: (plugin.name, plugin.distribution)):
+    for plugin in sorted(_offers(kind, tuple(sys.path)), key=lambda plugin: (plugin.name, plugin.distribution)):
         first = offered.setdefault(plugin.name, plugin)
         if first is not plugin:
             offered[plugin.name] = replace(first, rivals=(*first.rivals, plugin))
     return offered
 
 
-def _offers(kind: Kind) -> list[Plugin]:
-    """Every entry point of a kind; one that no distribution owns cannot be installed, so is left out."""
+@cache
+def _offers(kind: Kind, path: tuple[str, ...]) -> tuple[Plugin, ...]:
+    """Every entry point of a kind on `sys.path`; one that no distribution owns cannot be installed, so is left out."""
     entries = entry_points(group=GROUPS[kind])
-    return [Plugin(e.name, kind, e.dist.name, e.dist.version, e.value) for e in entries if e.dist]
+    return tuple(Plugin(e.name, kind, e.dist.name, e.dist.version, e.value) for e in entries if e.dist)
 
 
 def find(kind: Kind, name: str) -> Plugin:

@@ -5,19 +5,21 @@ from __future__ import annotations
 import multiprocessing
 import os
 from collections.abc import Iterator, Sequence
-from concurrent.futures import FIRST_COMPLETED, Future, wait
+from concurrent.futures import Future
 from dataclasses import dataclass
-from functools import partial
+from functools import cache, partial
 from multiprocessing.context import SpawnContext
 from multiprocessing.managers import SyncManager
 from pathlib import Path
 from queue import Empty, Queue
-from threading import Barrier, Thread
+from threading import Thread
 from time import monotonic, sleep
 
-from pebble import ProcessExpired, ProcessPool
+from pebble import ProcessExpired
 
+from vprbench.crew import Crew
 from vprbench.encoder_store import EncoderStore
+from vprbench.frame_memory import FrameMemory
 from vprbench.plugins import one_line
 from vprbench.runner import Outcome, failure, run
 from vprbench.sweep import Job
@@ -27,9 +29,6 @@ __all__ = ["Progress", "Settings", "run_all"]
 
 # How often a worker reports, seconds: a person sees no difference, a queue does.
 REPORT_EVERY = 0.1
-
-# How long workers may take to start, seconds, before nobody waits for them any more.
-ASSEMBLY = 30.0
 
 
 @dataclass(frozen=True)
@@ -65,39 +64,26 @@ class Progress:
 def run_all(todo: Sequence[Job], settings: Settings) -> Iterator[Progress | Outcome]:
     """Run jobs; yields their progress, and each outcome as soon as it is known."""
     context = multiprocessing.get_context("spawn")
-    with _manager(context) as manager, ProcessPool(settings.workers, context=context) as pool:
+    with _manager(context) as manager:
         messages: Queue[Progress | Outcome] = manager.Queue()
-        submit = partial(pool.schedule, _work, timeout=settings.timeout)
-        pending: dict[Future[None], Job] = {
-            submit(args=[job, number, settings, messages]): job for number, job in enumerate(todo)
-        }
+        work = partial(_work, settings=settings, messages=messages)
         unanswered = {cell: job for job in todo for cell in job.cells}
         lost = False
-        try:
-            while pending:
-                ended, _ = wait(pending, timeout=REPORT_EVERY, return_when=FIRST_COMPLETED)
+        with Crew(todo, work, settings.workers, settings.timeout, context) as crew:
+            crew.begin()
+            while crew.is_busy:
+                ended = crew.ended(within=REPORT_EVERY)
                 for message in _drain(messages):
                     if isinstance(message, Outcome):
                         del unanswered[message.cell]
                     yield message
-                for future in ended:
-                    job = pending.pop(future)
+                for job, future in ended:
                     lost = lost or isinstance(future.exception(), (TimeoutError, ProcessExpired))
                     for cell in job.cells:
                         if unanswered.pop(cell, None) is not None:
                             yield failure(job, cell, _fault(future, settings))
             if lost:
-                # A pool that closes while it starts a worker anew makes that worker complain on the terminal.
-                here = manager.Barrier(settings.workers)
-                wait([pool.schedule(_assemble, args=[here]) for _ in range(settings.workers)], timeout=ASSEMBLY)
-        except BaseException:
-            pool.stop()
-            raise
-
-
-def _assemble(here: Barrier) -> None:
-    """Wait in one worker until all are there."""
-    here.wait(ASSEMBLY)
+                crew.assemble()
 
 
 def _manager(context: SpawnContext) -> SyncManager:
@@ -129,8 +115,14 @@ def _work(job: Job, number: int, settings: Settings, messages: Queue[Progress | 
             messages.put(Progress(number, stage, done, total, note))
 
     with one_thread():
-        for outcome in run(job, settings.data, settings.routes_file, report, settings.store):
+        for outcome in run(job, settings.data, settings.routes_file, report, settings.store, _memory()):
             messages.put(outcome)
+
+
+@cache
+def _memory() -> FrameMemory:
+    """The frames that this process keeps for its next jobs."""
+    return FrameMemory()
 
 
 def _drain(messages: Queue[Progress | Outcome]) -> Iterator[Progress | Outcome]:

@@ -16,6 +16,7 @@ from vprbench.env import RouteEnv
 from vprbench.episode import Recording, calibrate, judge, play
 from vprbench.errors import PluginError
 from vprbench.fitted import fitted_agent
+from vprbench.frame_memory import FrameMemory
 from vprbench.metrics import evaluate
 from vprbench.plugins import one_line
 from vprbench.protocols import DescriptorLocalizer, Localizer
@@ -50,6 +51,7 @@ def run(
     routes_file: Path | None = None,
     report: Report = silent,
     store: EncoderStore | None = None,
+    memory: FrameMemory | None = None,
 ) -> Iterator[Outcome]:
     """Answer the cells of a job one by one; a cell that fails is an outcome with its error.
 
@@ -59,9 +61,12 @@ def run(
         routes_file: a TOML with the user's own routes.
         report: is told how far the job has come.
         store: where fitted encoders are kept; None for nowhere.
+        memory: of frames that jobs share; None for none.
     """
     try:
         route = load_route(job.route, data=data, routes=routes_file)
+        if memory is not None:
+            route = memory.share(route)
         player = _prepare(job, route, report, store)
     except Exception as error:
         yield from (failure(job, cell, one_line(error)) for cell in job.cells)
