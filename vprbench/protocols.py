@@ -155,8 +155,12 @@ class DescriptorLocalizer(Localizer, Protocol[Description]):
 
 
 @runtime_checkable
-class Storing(DescriptorLocalizer[Description], Protocol[Description]):
+class Storing(Localizer, Protocol[Description]):
     """One that can be given places outright, so that a large memory is filled without comparing each with all."""
+
+    def describe(self, observation: Observation) -> Description:
+        """All that a place or a query needs of one observation."""
+        ...
 
     def store(self, description: Description) -> int:
         """Make a place of a description, whether or not it is due; its index. `learn` stores what is due."""

@@ -112,7 +112,7 @@ class MaxPiAnn:
         responses = self.answer(view)
         if len(responses) and responses.max() >= np.float32(self.vigilance):
             return None
-        return self.add(view)
+        return self.store(view)
 
     def respond(self, observation: Observation) -> Responses:
         """Response 0..1 of every learned place."""
@@ -122,7 +122,7 @@ class MaxPiAnn:
         """The signatures and azimuths of one observation's landmarks."""
         return self._exact.describe(observation)
 
-    def add(self, view: View) -> int:
+    def store(self, view: View) -> int:
         """Make a view a place, whatever responds to it; the place's index."""
         index = self._fitted()
         place = self._views.add(view)

@@ -104,7 +104,7 @@ class Race:
     def grow(self, views: list[View]) -> None:
         started = process_time()
         for view in views:
-            self.index.add(view)
+            self.index.store(view)
         learned = process_time()
         responses = self.exact.compare(self.queries, views)
         self.exact_seconds += process_time() - learned

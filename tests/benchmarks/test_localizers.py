@@ -4,7 +4,7 @@ Group "locate one query" times those that find the best place without the respon
 at the same turn: `extra_info["per_respond"]` is the ratio of the CPU times of both, over several queries.
 
 One that looks through an encoder is timed with each registered encoder; but with `ENCODER` alone where it has no
-`compare`: its learning cannot be hurried.
+`compare`, since its time does not tell encoders apart.
 """
 
 from __future__ import annotations
