@@ -56,9 +56,10 @@ def check_route(
         ConfigError: there is no route of that name, or the file of routes is wrong.
     """
     known = catalogue(routes_file)
-    needs = known.availability(name, data).needs
-    if lacking := [need for need in needs if not need.complete]:
-        return RouteCheck(name, tuple(Finding("error", "files", name, str(need), need.remedy) for need in lacking))
+    there = known.availability(name, data)
+    if there.wanting:
+        lacking = (Finding("error", "files", name, str(need), there.hint or need.remedy) for need in there.wanting)
+        return RouteCheck(name, tuple(lacking))
     try:
         route = known.load(name, data)
     except DataError as error:
