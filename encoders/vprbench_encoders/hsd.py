@@ -8,7 +8,6 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
 from dataclasses import KW_ONLY, dataclass, field, fields
-from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Literal
 
@@ -34,7 +33,7 @@ from vprbench_encoders.whitening import CUTOFF
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
-__all__ = ["HSD", "hsd_12", "hsd_15", "hsd_15_30", "hsd_18", "hsd_21", "hsd_24", "hsd_30", "hsd_plus"]
+__all__ = ["HSD"]
 
 
 @dataclass(eq=False, repr=False)
@@ -46,6 +45,7 @@ class HSD:
         map_size: rows and columns of each map; None: as many as of atoms. The paper's HSD-15/30 has 30 for 15.
         seed: of everything that is drawn: jitter, batches, and what the dictionaries and maps start from.
         points, radius, margin, alpha, sigmas, floor: of the focus points; see `FocusDetector`.
+        focus_reduction: they are sought at 1/focus_reduction of the frame's resolution (1: all of it).
         window: width of a local view, px of the frame, even (the paper's 54).
         whitening: whether the halved frame is whitened (the paper does); cutoff: f0, cycles/px (public code).
         jitter: training views are moved by up to so many px of the frame (our choice) ...
@@ -79,6 +79,7 @@ class HSD:
     alpha: float = 1.0
     sigmas: tuple[float, float] = (2.0, 4.0)
     floor: float = 1e-3
+    focus_reduction: int = 1
     window: int = 54
     whitening: bool = True
     cutoff: float = CUTOFF
@@ -120,7 +121,9 @@ class HSD:
             margin=self.margin,
             floor=self.floor,
         )
-        self._views = LocalViews(focus, LocalView(self.window), self.cutoff if self.whitening else None)
+        self._views = LocalViews(
+            focus, LocalView(self.window), self.cutoff if self.whitening else None, self.focus_reduction
+        )
         self._sampling = ViewSampling(
             frames=self.training_frames, held_out=self.held_out, jitter=self.jitter, copies=self.copies
         )
@@ -250,6 +253,7 @@ class HSD:
                 f"window must be even, 4..{FRAME_HEIGHT}, not {self.window}",
                 4 <= self.window <= FRAME_HEIGHT and self.window % 2 == 0,
             ),
+            (f"focus_reduction must be 1..8, not {self.focus_reduction}", 1 <= self.focus_reduction <= 8),
             (f"cutoff must be above 0, not {self.cutoff}", self.cutoff > 0),
             (f"pool must be 1..{side}, not {self.pool}", 1 <= self.pool <= side),
             (f"picks must be below the {self.size**2} atoms, not {self.picks}", max(self.picks) < self.size**2),
@@ -284,17 +288,3 @@ class HSD:
             centred=self.centred and layer == 1,
             equalised=self.equalised,
         )
-
-
-hsd_12 = partial(HSD, size=12)
-hsd_15 = partial(HSD, size=15)
-hsd_18 = partial(HSD, size=18)
-hsd_21 = partial(HSD, size=21)
-hsd_24 = partial(HSD, size=24)
-hsd_30 = partial(HSD, size=30)
-hsd_15_30 = partial(HSD, size=15, map_size=30)
-
-# Ours, chosen on drawn streets and warped frames (docs/hsd.md): the first layer alone, more of it and in more places.
-hsd_plus = partial(
-    HSD, size=12, map_size=24, signature="c1", picks=(20, 5), window=72, jitter=12, points=50, radius=14.0, pool=3
-)

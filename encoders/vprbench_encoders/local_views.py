@@ -13,8 +13,9 @@ from vprbench.errors import ConfigError, DataError
 from vprbench.types import Frame
 from vprbench_encoders.focus import FocusDetector
 from vprbench_encoders.patches import LocalView, jittered
+from vprbench_encoders.resolution import reduced
 from vprbench_encoders.stepwise import Progress, Work
-from vprbench_encoders.whitening import halve, whiten
+from vprbench_encoders.whitening import whiten
 
 __all__ = ["LocalViews", "TrainingViews", "ViewSampling"]
 
@@ -27,19 +28,21 @@ class LocalViews:
         focus: where to look.
         view: what to take in there.
         cutoff: of the whitening filter, cycles/px of the halved frame; None: no whitening.
+        focus_reduction: focus points are sought at 1/focus_reduction of the frame's resolution.
     """
 
     focus: FocusDetector
     view: LocalView
     cutoff: float | None
+    focus_reduction: int = 1
 
     def points(self, frame: Frame) -> Float32[np.ndarray, "points 2"]:
         """The focus points (u, v) of a frame."""
-        return self.focus.find(self.focus.gradient(frame))
+        return self.focus.points_of(frame, self.focus_reduction)
 
     def cut(self, frame: Frame, points: Float32[np.ndarray, "points 2"]) -> Float32[np.ndarray, "points size"]:
         """The view around each point; the frame is whitened whole, so that no view has a border of its own."""
-        image = halve(frame.astype(np.float32))
+        image = reduced(frame.astype(np.float32), 2)
         return self.view.cut(image if self.cutoff is None else whiten(image, self.cutoff), points)
 
 

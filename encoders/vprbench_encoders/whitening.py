@@ -13,19 +13,13 @@ import cv2
 import numpy as np
 from jaxtyping import Float32, Float64
 
-__all__ = ["CUTOFF", "halve", "radial_gain", "whiten"]
+__all__ = ["CUTOFF", "radial_gain", "whiten"]
 
 # f0 in cycles per pixel, as public code of sparse Hebbian learning has it.
 CUTOFF = 0.39
 
 # The filter's reach in pixels: beyond it lies less than 1e-5 of the energy of its kernel.
 _MARGIN = 16
-
-
-def halve(image: Float32[np.ndarray, "height width"]) -> Float32[np.ndarray, "rows columns"]:
-    """The image at half its resolution, each pixel the mean of 2 x 2."""
-    height, width = image.shape
-    return cv2.resize(image, (width // 2, height // 2), interpolation=cv2.INTER_AREA)
 
 
 def radial_gain(frequency: Float64[np.ndarray, "..."], cutoff: float = CUTOFF) -> Float64[np.ndarray, "..."]:

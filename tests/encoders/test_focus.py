@@ -99,6 +99,26 @@ def test_points_are_the_greedy_choice_among_local_maxima(seed: int, radius: floa
     assert list(map(tuple, detector.find(gradient).tolist())) == kept
 
 
+@pytest.mark.parametrize("reduction", [2, 3])
+def test_points_of_a_reduced_frame_are_those_of_the_small_one_at_its_scale(reduction: int) -> None:
+    small = noise(3)
+    large = small.repeat(reduction, axis=0).repeat(reduction, axis=1)
+    fine = FocusDetector(alpha=0.75, sigmas=(2.0 * reduction, 4.0 * reduction), radius=9.0 * reduction, margin=27)
+    coarse = FocusDetector(alpha=0.75 * reduction, sigmas=(2.0, 4.0), radius=9.0, margin=-(-27 // reduction))
+    u, v = np.array(find(small, coarse)).T
+    assert len(u) > 10
+    # Pixel u of the small frame is pixels u r .. u r + r - 1 of the large one.
+    middle = (reduction - 1) / 2
+    np.testing.assert_array_equal(fine.points_of(large, reduction), np.stack([u, v], axis=1) * reduction + middle)
+
+
+def test_a_reduced_frame_has_its_points_where_the_whole_one_has() -> None:
+    spots = [(300, 100, 250), (500, 81, 170), (101, 60, 90)]
+    for reduction in (1, 2):
+        points = FocusDetector().points_of(blobs(*spots), reduction)
+        assert np.abs(points - np.array(spots)[:, :2]).max() <= reduction / 2
+
+
 @pytest.mark.parametrize(
     ("options", "named"),
     [
@@ -121,5 +141,6 @@ def test_impossible_options_are_refused_by_name(options: dict[str, float], named
     "frame", [np.zeros((188, 642, 3), np.uint8), np.zeros((188, 642), np.float32), np.zeros((0, 5), np.uint8)]
 )
 def test_what_is_no_grey_frame_is_refused(frame: np.ndarray) -> None:
-    with pytest.raises(DataError, match="grey uint8"):
-        FocusDetector().gradient(frame)
+    for reduction in (1, 2):
+        with pytest.raises(DataError, match="grey uint8"):
+            FocusDetector().points_of(frame, reduction)

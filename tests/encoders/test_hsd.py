@@ -56,12 +56,12 @@ def test_each_configuration_of_the_paper_has_a_name(name: str, size: int, map_si
     assert signatures(encoder).shape == (25, values)
 
 
-def test_ours_is_one_layer_pooled_to_64_values() -> None:
+def test_ours_is_the_code_of_one_layer_at_more_points() -> None:
     encoder = build_encoder({"name": "hsd-plus", "steps": 1, "epochs": 1}, seed=4)
     encoder.fit(FRAMES[:1])
     signatures = encoder.encode(textured_frame(1)).signatures
-    assert signatures.shape[0] > 25 and signatures.shape[1] == 64
-    assert ((signatures > 0).sum(axis=1) <= 20).all()
+    assert signatures.shape[0] > 25 and signatures.shape[1] == 225
+    assert ((signatures > 0).sum(axis=1) <= 15).all()
 
 
 @pytest.mark.parametrize("protocol", [Encoder, Measured, Stepwise, Storable])
@@ -141,6 +141,7 @@ def test_s2_codes_what_c1_has_beyond_its_mean(usual: HSD) -> None:
         {"map_size": 8},
         {"points": 10},
         {"radius": 40.0},
+        {"focus_reduction": 2},
     ],
     ids=str,
 )
@@ -272,6 +273,7 @@ def test_an_encoder_that_has_learned_nothing_says_so() -> None:
         ({"size": 1}, "size"),
         ({"map_size": 1}, "map_size"),
         ({"size": 6, "map_size": 8, "topology": False}, "topology"),
+        ({"focus_reduction": 0}, "focus_reduction"),
         ({"window": 27}, "window"),
         ({"window": 190}, "window"),
         ({"cutoff": 0.0}, "cutoff"),
