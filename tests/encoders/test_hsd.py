@@ -34,36 +34,6 @@ def usual() -> HSD:
     return fitted()
 
 
-@pytest.mark.parametrize(
-    ("name", "size", "map_size", "values"),
-    [
-        ("hsd", 15, 15, 64),
-        ("hsd-12", 12, 12, 36),
-        ("hsd-15", 15, 15, 64),
-        ("hsd-18", 18, 18, 81),
-        ("hsd-21", 21, 21, 100),
-        ("hsd-24", 24, 24, 144),
-        ("hsd-30", 30, 30, 225),
-        ("hsd-15-30", 15, 30, 225),
-    ],
-)
-def test_each_configuration_of_the_paper_has_a_name(name: str, size: int, map_size: int, values: int) -> None:
-    encoder = build_encoder({"name": name, "steps": 1, "epochs": 1}, seed=4)
-    assert isinstance(encoder, HSD)
-    assert (encoder.size, encoder.map_size or encoder.size, encoder.seed) == (size, map_size, 4)
-    encoder.fit(FRAMES[:1])
-    assert len(encoder.layers[0].units) == len(encoder.layers[1].units) == map_size**2
-    assert signatures(encoder).shape == (25, values)
-
-
-def test_ours_is_the_code_of_one_layer_at_more_points() -> None:
-    encoder = build_encoder({"name": "hsd-plus", "steps": 1, "epochs": 1}, seed=4)
-    encoder.fit(FRAMES[:1])
-    signatures = encoder.encode(textured_frame(1)).signatures
-    assert signatures.shape[0] > 25 and signatures.shape[1] == 225
-    assert ((signatures > 0).sum(axis=1) <= 15).all()
-
-
 @pytest.mark.parametrize("protocol", [Encoder, Measured, Stepwise, Storable])
 def test_it_is_an_encoder_that_learns_stepwise_and_can_be_stored_and_measured(protocol: type) -> None:
     assert isinstance(HSD(), protocol)
