@@ -23,7 +23,7 @@ class PlaceMemory:
         self._outlines = Growing(np.float32, OUTLINE_SIZE)
 
     @classmethod
-    def of(cls, places: Iterable[Float32[np.ndarray, "9 1056"]]) -> Self:
+    def of(cls, places: Iterable[Float32[np.ndarray, "32 288"]]) -> Self:
         """A memory of these places."""
         memory = cls()
         for planes in places:
@@ -31,7 +31,7 @@ class PlaceMemory:
         return memory
 
     @property
-    def planes(self) -> Float32[np.ndarray, "places 9 1056"]:
+    def planes(self) -> Float32[np.ndarray, "places 32 288"]:
         """The planes of each place; a view that the next `add` may leave behind."""
         return self._planes.rows
 
@@ -43,7 +43,7 @@ class PlaceMemory:
     def __len__(self) -> int:
         return len(self._planes)
 
-    def add(self, planes: Float32[np.ndarray, "9 1056"]) -> int:
+    def add(self, planes: Float32[np.ndarray, "32 288"]) -> int:
         """Store a place; its index."""
         self._planes.extend(planes[None])
         self._outlines.extend(outline(planes)[None])

@@ -1,7 +1,7 @@
 """Exact search for the place that responds most to a query, which gives places up as soon as they cannot win.
 
-A place is matched strip by strip, two rows of the query's regions at a time. No region can add more than its share, 1 /
-number of kept regions, so a place is left once what it has and what it could still get is less than the best so far.
+A place is matched strip by strip, four rows of the query's regions at a time. No region can add more than its share,
+1 / number of kept regions: a place is left once what it has and what it could still get is less than the best so far.
 
 Two orders decide how soon that is, and neither what is found. Places are visited as their outlines resemble the
 query's; strips are matched in the order of how much the first places visited missed in them.
@@ -18,13 +18,25 @@ from numba import njit
 from numpy.typing import NDArray
 
 from vprbench_localizers.on_threads import on_threads
-from vprbench_localizers.region_match import CELLS, STRIPS, Description, match_strip, share_buffers, total
+from vprbench_localizers.region_match import (
+    CELLS,
+    DIRECTIONS,
+    REGIONS,
+    Description,
+    match_rows,
+    room_to_match,
+    total,
+)
 
 __all__ = ["OUTLINE_SIZE", "Found", "best_place", "outline"]
 
 # Cells a side that an outline takes together (our choice: 2, 4 and 8 put the place that wins equally far in front).
 COARSE = 8
-OUTLINE_SIZE = (CELLS // COARSE) ** 2 * 8
+OUTLINE_SIZE = (CELLS // COARSE) ** 2 * DIRECTIONS
+
+# Rows of regions to a strip (our choice: with fewer, places are left earlier, but less work is shared between rows).
+STRIP = 4
+STRIPS = -(-REGIONS // STRIP)
 
 # So many places are matched whole, to learn in which strips most is missed (our choice).
 PROBES = 8
@@ -47,16 +59,16 @@ class Found(NamedTuple):
     matched: float
 
 
-def outline(planes: Float32[np.ndarray, "9 1056"]) -> Float32[np.ndarray, " 128"]:
+def outline(planes: Float32[np.ndarray, "32 288"]) -> Float32[np.ndarray, " 128"]:
     """The gradients of a frame in 4 x 4 fields, as a unit vector; square roots keep a few strong edges from ruling."""
-    cells = np.sqrt(planes[:8, : CELLS * CELLS])
-    fields = cells.reshape(8, CELLS // COARSE, COARSE, CELLS // COARSE, COARSE).mean(axis=(2, 4)).ravel()
+    cells = np.sqrt(planes[:, : DIRECTIONS * CELLS])
+    fields = cells.reshape(CELLS // COARSE, COARSE, DIRECTIONS, CELLS // COARSE, COARSE).mean(axis=(1, 4)).ravel()
     return fields / max(np.linalg.norm(fields), np.finfo(np.float32).tiny)
 
 
 def best_place(
     query: Description,
-    places: Float32[np.ndarray, "places 9 1056"],
+    places: Float32[np.ndarray, "places 32 288"],
     outlines: Float32[np.ndarray, "places 128"],
     threads: int = 1,
 ) -> Found:
@@ -76,32 +88,31 @@ def best_place(
     return best._replace(matched=matched / max(len(visits), 1))
 
 
-def _search(query: Description, places: Float32[np.ndarray, "places 9 1056"], visits: Int64[np.ndarray, " n"]) -> Found:
+def _search(query: Description, places: Float32[np.ndarray, "places 32 288"], visits: Int64[np.ndarray, " n"]) -> Found:
     """The best of the places visited, of which there is at least one."""
     regions, share = _asked(query)
-    place, response, matched = _visit(query.planes, query.weights, regions, share, places, visits)
+    place, response, matched = _visit(query, regions, share, places, visits)
     return Found(int(place), float(response), float(matched / max(len(visits) * regions.sum(), 1)))
 
 
-def _asked(query: Description) -> tuple[Int64[np.ndarray, "16"], float]:
+def _asked(query: Description) -> tuple[Int64[np.ndarray, "8"], float]:
     """How many regions of each strip the query asks for, and the most that one of them can add to a score."""
-    asking = np.flatnonzero(query.weights)
-    regions = np.bincount(asking // (2 * CELLS), minlength=STRIPS)[:STRIPS]
-    share = np.divide(query.weights[asking], query.planes[8, asking], dtype=np.float64)
-    return regions, float(share.max(initial=0.0))
+    regions = [np.count_nonzero(query.weights[first : first + STRIP]) for first in range(0, REGIONS, STRIP)]
+    inverse = query.planes[:, DIRECTIONS * CELLS :]
+    shares = np.divide(query.weights, inverse, out=np.zeros((CELLS, CELLS)), where=inverse > 0)
+    return np.array(regions), float(shares.max())
 
 
 @njit(cache=True, nogil=True)
 def _visit(
-    query: NDArray[np.float32],
-    weights: NDArray[np.float32],
+    query: Description,
     regions: NDArray[np.int64],
     share: float,
     places: NDArray[np.float32],
     visits: NDArray[np.int64],
 ) -> tuple[int, np.float32, int]:
     """Index and score of the best place, and how many regions were matched in all."""
-    columns, shares = share_buffers()
+    query, buffers, shares = room_to_match(query)
     order, missed = np.arange(STRIPS), np.zeros(STRIPS)
     best, best_score, matched = -1, np.float32(0), 0
     for visit in range(len(visits)):
@@ -111,8 +122,9 @@ def _visit(
         for strip in order:
             if visit >= PROBES and reach + SLACK < best_score:
                 break
-            match_strip(query, weights, places[k], int(strip), columns, shares)
-            miss = share * regions[strip] - shares[strip].sum()
+            first, last = int(strip) * STRIP, min(int(strip) * STRIP + STRIP, REGIONS)
+            match_rows(query, places[k], first, last, buffers, shares)
+            miss = share * regions[strip] - shares[first:last].sum()
             missed[strip] += miss
             reach -= miss
             matched += regions[strip]

@@ -1,53 +1,55 @@
 """The region match of CoHOG: mean over a query's kept regions of the best cosine with any region of a place.
 
-A region is 2x2 cells, so with C the products of query cells and place cells, the product of two regions is
-C(upper left) + C(lower left) + C(upper right) + C(lower right). Neighbouring regions share their columns of two
-cells: each column's sum is computed once, which halves the work of multiplying 32-value descriptors, and neither
-the descriptors nor their 961 x 961 products are ever stored.
+A region is 2x2 cells. With C(i, j; k, l) the product of the query's cell in row i, column j and the place's in row k,
+column l, the product of the regions that have them as their upper left cells is
 
-Cells and regions share one index, row by row, 32 to a row; a region has that of its upper right cell:
+    C(i, j; k, l) + C(i+1, j; k+1, l) + C(i, j+1; k, l+1) + C(i+1, j+1; k+1, l+1)
 
-    cell (i, j)   at 32 i + j       +------+------+
-    region (i, j) at 32 i + j + 1   |    n | n+1  | <- here stands the region of these four cells
-                                    +------+------+
-                                    | n+32 | n+33 |
-                                    +------+------+
-
-In the scan over n + 1 the column of n + 1 and n + 33 completes that region, then opens the next one to the right.
+so each C serves four pairs of regions. It is computed once: the products of a row of the query's cells with a row of
+the place's are a block of 32 x 32. Down a diagonal (i+1, k+1) each block is added to the one before, which makes the
+first two terms; the last two are those sums again, one place cell and one query cell on. Neither the descriptors nor
+their 961 x 961 products are ever stored: a block and its sums are 8 kB, and stay in the nearest cache.
 """
 
 from __future__ import annotations
 
-from typing import Any, NamedTuple
+from typing import NamedTuple
 
 import numpy as np
 from jaxtyping import Bool, Float32, Float64
-from llvmlite import ir  # type: ignore[import-untyped]
 from numba import njit
-from numba.extending import intrinsic
 from numpy.typing import NDArray
 
 from vprbench_localizers.on_threads import on_threads
 
 __all__ = [
+    "CELLS",
+    "DIRECTIONS",
     "PLANES_SHAPE",
-    "STRIPS",
+    "REGIONS",
+    "Buffers",
     "Description",
     "describe_regions",
-    "match_strip",
+    "match_rows",
+    "room_to_match",
     "score_places",
-    "share_buffers",
     "total",
 ]
 
 CELLS = 32  # a side
 REGIONS = CELLS - 1
-STRIPS = CELLS // 2  # of two rows of regions, which are matched together; the last row of the last is empty
-# A last row of empty cells lets the regions' rows be taken two by two.
-LENGTH = (CELLS + 1) * CELLS
-# Place cells that are the upper ones of a region.
-UPPER = REGIONS * CELLS
-PLANES_SHAPE = (9, LENGTH)
+DIRECTIONS = 8
+# A row of cells: its values of each direction, then 1 / |descriptor| of the regions that have it as their upper cells.
+PLANES_SHAPE = (CELLS, (DIRECTIONS + 1) * CELLS)
+INVERSES = DIRECTIONS * CELLS
+BLOCK = CELLS * CELLS
+# Sums begin half a block behind the products: a processor first tells addresses apart by their last 12 bits, so that a
+# load waits for a store a whole block of 4096 bytes away.
+SUMS = BLOCK + BLOCK // 2
+
+# Sums are taken in the order written, wherever a kernel is inlined: responses must not depend on who asks. Nothing
+# here is negative, infinite or not a number, without which the maximum would not be one instruction.
+EXACT = {"contract", "nnan", "nsz"}
 
 # The eight values of one cell.
 Cell = tuple[np.float32, np.float32, np.float32, np.float32, np.float32, np.float32, np.float32, np.float32]
@@ -56,15 +58,29 @@ Cell = tuple[np.float32, np.float32, np.float32, np.float32, np.float32, np.floa
 class Description(NamedTuple):
     """All that CoHOG keeps of a frame.
 
-    Region (i, j) has its numbers at position 32 i + j + 1, that of its upper right cell; the first column is zero.
+    Region (i, j) has its numbers where its upper left cell is; the last row and column of regions are zero.
 
     Shapes:
-        planes: float32 (9, 1056): eight values of each cell, row by row; then each region's 1 / |descriptor|.
-        weights: float32 (1056,): 1 / |descriptor| / number of kept regions, zero where a region is not kept.
+        planes: float32 (32, 288): of each row of cells 32 values of each of 8 directions; then 1 / |descriptor|.
+        weights: float32 (32, 32): 1 / |descriptor| / number of kept regions, zero where a region is not kept.
     """
 
-    planes: Float32[np.ndarray, "9 1056"]
-    weights: Float32[np.ndarray, " 1056"]
+    planes: Float32[np.ndarray, "32 288"]
+    weights: Float32[np.ndarray, "32 32"]
+
+
+class Buffers(NamedTuple):
+    """Room for one match at a time.
+
+    Shapes:
+        products: (1024,): of a row of the query's cells with a row of the place's, 32 to each cell of the place.
+        sums: (1057,): those of two rows with the products of the next two; the rest is read, and does not count.
+        best: (31, 32): the best product of each region of the query with any of the place, at its upper left cell.
+    """
+
+    products: Float32[np.ndarray, " 1024"]
+    sums: Float32[np.ndarray, " 1057"]
+    best: Float32[np.ndarray, "31 32"]
 
 
 def describe_regions(cells: Float64[np.ndarray, "32 32 8"], kept: Bool[np.ndarray, "31 31"]) -> Description:
@@ -75,17 +91,17 @@ def describe_regions(cells: Float64[np.ndarray, "32 32 8"], kept: Bool[np.ndarra
     squares = np.square(cells).sum(axis=2)
     norms = np.sqrt(squares[:-1, :-1] + squares[:-1, 1:] + squares[1:, :-1] + squares[1:, 1:])
     inverse = np.divide(1.0, norms, out=np.zeros_like(norms), where=norms > 0)
-    planes = np.zeros((9, CELLS + 1, CELLS), np.float32)
-    planes[:8, :CELLS] = np.moveaxis(cells, 2, 0)
-    planes[8, :REGIONS, 1:] = inverse
-    weights = np.zeros((CELLS + 1, CELLS), np.float32)
-    weights[:REGIONS, 1:] = inverse * kept / max(np.count_nonzero(kept), 1)
-    return Description(planes.reshape(9, LENGTH), weights.reshape(LENGTH))
+    planes = np.zeros((CELLS, DIRECTIONS + 1, CELLS), np.float32)
+    planes[:, :DIRECTIONS] = np.moveaxis(cells, 2, 1)
+    planes[:REGIONS, DIRECTIONS, :REGIONS] = inverse
+    weights = np.zeros((CELLS, CELLS), np.float32)
+    weights[:REGIONS, :REGIONS] = inverse * kept / max(np.count_nonzero(kept), 1)
+    return Description(planes.reshape(PLANES_SHAPE), weights)
 
 
 def score_places(
     query: Description,
-    places: Float32[np.ndarray, "places 9 1056"],
+    places: Float32[np.ndarray, "places 32 288"],
     scores: Float32[np.ndarray, " places"],
     threads: int = 1,
 ) -> None:
@@ -100,124 +116,127 @@ def score_places(
     share = -(-len(places) // threads)
     firsts = range(0, len(places), max(share, 1))
     spans = [slice(first, first + share) for first in firsts]
-    on_threads(lambda span: _score(query.planes, query.weights, places[span], scores[span]), spans)
-
-
-def _maximum(_typing: Any, a: Any, _b: Any) -> Any:  # noqa: ANN401 - numba's own types are untyped
-    """The larger of two floats as one instruction: LLVM puts no loop into vector lanes that calls numba's max."""
-
-    def generate(_context: Any, builder: Any, _signature: Any, args: Any) -> Any:  # noqa: ANN401
-        kind = args[0].type
-        maximum = builder.module.declare_intrinsic("llvm.maxnum", [kind], ir.FunctionType(kind, [kind, kind]))
-        return builder.call(maximum, args, fastmath=("fast",))
-
-    return a(a, a), generate
-
-
-_larger: Any = intrinsic(_maximum)
+    on_threads(lambda span: _score(query, places[span], scores[span]), spans)
 
 
 @njit(cache=True)
-def _cell(planes: NDArray[np.float32], at: int) -> Cell:
+def _cell(row: NDArray[np.float32], at: int) -> Cell:
     """The eight values of a cell, as scalars that stay in registers."""
     return (
-        planes[0, at],
-        planes[1, at],
-        planes[2, at],
-        planes[3, at],
-        planes[4, at],
-        planes[5, at],
-        planes[6, at],
-        planes[7, at],
+        row[at],
+        row[CELLS + at],
+        row[2 * CELLS + at],
+        row[3 * CELLS + at],
+        row[4 * CELLS + at],
+        row[5 * CELLS + at],
+        row[6 * CELLS + at],
+        row[7 * CELLS + at],
     )
 
 
-@njit(cache=True, fastmath=True)
-def _product(cell: Cell, planes: NDArray[np.float32], at: int) -> np.float32:
-    """The dot product of a cell and the cell of `planes` at a position."""
+@njit(cache=True, fastmath=EXACT)
+def _product(cell: Cell, row: NDArray[np.float32], at: int) -> np.float32:
+    """The dot product of a cell and the cell of `row` at a column."""
     return (
-        cell[0] * planes[0, at]
-        + cell[1] * planes[1, at]
-        + cell[2] * planes[2, at]
-        + cell[3] * planes[3, at]
-        + cell[4] * planes[4, at]
-        + cell[5] * planes[5, at]
-        + cell[6] * planes[6, at]
-        + cell[7] * planes[7, at]
+        cell[0] * row[at]
+        + cell[1] * row[CELLS + at]
+        + cell[2] * row[2 * CELLS + at]
+        + cell[3] * row[3 * CELLS + at]
+        + cell[4] * row[4 * CELLS + at]
+        + cell[5] * row[5 * CELLS + at]
+        + cell[6] * row[6 * CELLS + at]
+        + cell[7] * row[7 * CELLS + at]
     )
 
 
-@njit(cache=True, fastmath=True)
-def _best_pair(
-    query: NDArray[np.float32],
-    at: int,
-    place: NDArray[np.float32],
-    left: NDArray[np.float32],
-    right: NDArray[np.float32],
-) -> tuple[np.float32, np.float32]:
-    """Best product with any region of a place, of the regions whose upper right cell is `at` and the one below it.
-
-    `left` holds the sums of the column of cells to the left, for both regions, each at the position to the right
-    of its own; those of this column are written to `right`. The caller then swaps the two, since this column is
-    the left one of the next regions.
-    """
-    top, middle, bottom = _cell(query, at), _cell(query, at + CELLS), _cell(query, at + 2 * CELLS)
-    upper_best, lower_best = np.float32(0), np.float32(0)
-    for x in range(UPPER):
-        upper = _product(top, place, x) + _product(middle, place, x + CELLS)
-        lower = _product(middle, place, x) + _product(bottom, place, x + CELLS)
-        upper_best = _larger(upper_best, (left[0, x] + upper) * place[8, x])
-        lower_best = _larger(lower_best, (left[1, x] + lower) * place[8, x])
-        right[0, x + 1] = upper
-        right[1, x + 1] = lower
-    return upper_best, lower_best
-
-
-@njit(cache=True, fastmath=True)
-def match_strip(
-    query: NDArray[np.float32],
-    weights: NDArray[np.float32],
-    place: NDArray[np.float32],
-    strip: int,
-    columns: tuple[NDArray[np.float32], NDArray[np.float32]],
-    shares: NDArray[np.float32],
+@njit(cache=True, fastmath=EXACT)
+def _multiply(
+    query: NDArray[np.float32], place: NDArray[np.float32], products: NDArray[np.float32], sums: NDArray[np.float32]
 ) -> None:
-    """Write to `shares`, of two rows of regions, what each column of two adds to the score; see `share_buffers`."""
-    left, right = columns
-    for column in range(CELLS):
-        at = 2 * strip * CELLS + column
-        upper, lower = weights[at], weights[at + CELLS]
-        share = np.float32(0)
-        if upper or lower or weights[at + 1] or weights[at + 1 + CELLS]:
-            best = _best_pair(query, at, place, left, right)
-            share = upper * best[0] + lower * best[1]
-            left, right = right, left
-        shares[strip, column] = share
+    """Put the products of two rows of cells into `products`, and into `sums` their sums with what was there.
+
+    Two cells of the place are taken at a time, so that each value of the query, once loaded, serves twice.
+    """
+    for at in range(0, CELLS, 2):
+        cell, other = _cell(place, at), _cell(place, at + 1)
+        for column in range(CELLS):
+            x = CELLS * at + column
+            product, other_product = _product(cell, query, column), _product(other, query, column)
+            sums[x] = products[x] + product
+            sums[x + CELLS] = products[x + CELLS] + other_product
+            products[x] = product
+            products[x + CELLS] = other_product
+
+
+@njit(cache=True, fastmath=EXACT)
+def _compare(sums: NDArray[np.float32], place: NDArray[np.float32], best: NDArray[np.float32]) -> None:
+    """Raise `best` of a row of the query's regions to their products with a row of the place's, four at a time.
+
+    The place's last region is none; its 1 / |descriptor| is zero.
+    """
+    for at in range(0, CELLS, 4):
+        inverse = place[INVERSES + at], place[INVERSES + at + 1], place[INVERSES + at + 2], place[INVERSES + at + 3]
+        for column in range(CELLS):
+            x = CELLS * at + column
+            first = (sums[x] + sums[x + CELLS + 1]) * inverse[0]
+            second = (sums[x + CELLS] + sums[x + 2 * CELLS + 1]) * inverse[1]
+            third = (sums[x + 2 * CELLS] + sums[x + 3 * CELLS + 1]) * inverse[2]
+            fourth = (sums[x + 3 * CELLS] + sums[x + 4 * CELLS + 1]) * inverse[3]
+            best[column] = max(first, second, third, fourth, best[column])
 
 
 @njit(cache=True)
-def total(shares: NDArray[np.float32]) -> np.float32:
-    """The score that the shares of all regions make, added up in an order that does not depend on who asks."""
+def _share(weights: NDArray[np.float32], best: NDArray[np.float32]) -> float:
+    """What a row of regions adds to the score; the last column is no region, and counts nothing."""
+    share = 0.0
+    for column in range(REGIONS):
+        share += weights[column] * best[column]
+    return share
+
+
+@njit(cache=True)
+def match_rows(
+    query: Description,
+    place: NDArray[np.float32],
+    first: int,
+    last: int,
+    buffers: Buffers,
+    shares: NDArray[np.float64],
+) -> None:
+    """Write to `shares` what each row first..last - 1 of the query's regions adds to the score of a place."""
+    products, sums, best = buffers
+    best[first:last] = 0
+    for shift in range(1 - last, REGIONS - first):
+        start, end = max(first, -shift), min(last, REGIONS - shift)
+        _multiply(query.planes[start], place[start + shift], products, sums)
+        for row in range(start, end):
+            _multiply(query.planes[row + 1], place[row + 1 + shift], products, sums)
+            _compare(sums, place[row + shift], best[row])
+    for row in range(first, last):
+        shares[row] = _share(query.weights[row], best[row])
+
+
+@njit(cache=True)
+def total(shares: NDArray[np.float64]) -> np.float32:
+    """The score that the shares of all rows make, added up in an order that does not depend on who asks."""
     score = 0.0
-    for strip in range(STRIPS):
-        for column in range(CELLS):
-            score += shares[strip, column]
+    for row in range(REGIONS):
+        score += shares[row]
     return np.float32(min(score, 1.0))
 
 
 @njit(cache=True)
-def share_buffers() -> tuple[tuple[NDArray[np.float32], NDArray[np.float32]], NDArray[np.float32]]:
-    """Room for the sums of two columns, and for the shares of every strip."""
-    columns = np.zeros((2, LENGTH), np.float32), np.zeros((2, LENGTH), np.float32)
-    return columns, np.zeros((STRIPS, CELLS), np.float32)
+def room_to_match(query: Description) -> tuple[Description, Buffers, NDArray[np.float64]]:
+    """The query where a vector of 8 values lies in one line of the cache; buffers; room for the share of every row."""
+    aligned = Description(query.planes.copy(), query.weights)
+    room = np.zeros(SUMS + BLOCK + CELLS + 1, np.float32)
+    buffers = Buffers(room[:BLOCK], room[SUMS:], np.zeros((REGIONS, CELLS), np.float32))
+    return aligned, buffers, np.zeros(REGIONS)
 
 
 @njit(cache=True, nogil=True)
-def _score(
-    query: NDArray[np.float32], weights: NDArray[np.float32], places: NDArray[np.float32], scores: NDArray[np.float32]
-) -> None:
-    columns, shares = share_buffers()
+def _score(query: Description, places: NDArray[np.float32], scores: NDArray[np.float32]) -> None:
+    query, buffers, shares = room_to_match(query)
     for k in range(len(places)):
-        for strip in range(STRIPS):
-            match_strip(query, weights, places[k], strip, columns, shares)
+        match_rows(query, places[k], 0, REGIONS, buffers, shares)
         scores[k] = total(shares)

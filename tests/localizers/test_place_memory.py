@@ -7,8 +7,8 @@ from vprbench_localizers.place_memory import PlaceMemory
 
 def test_places_keep_their_order_and_values_while_the_memory_grows() -> None:
     memory = PlaceMemory()
-    assert memory.planes.shape == (0, 9, 1056)
-    indices = [memory.add(np.full((9, 1056), value, np.float32)) for value in range(40)]
+    assert memory.planes.shape == (0, 32, 288)
+    indices = [memory.add(np.full((32, 288), value, np.float32)) for value in range(40)]
     assert indices == list(range(40))
     assert len(memory) == 40
     assert memory.planes.flags.c_contiguous
@@ -18,7 +18,7 @@ def test_places_keep_their_order_and_values_while_the_memory_grows() -> None:
 
 
 def test_adding_seldom_copies_what_is_stored() -> None:
-    memory, planes = PlaceMemory(), np.zeros((9, 1056), np.float32)
+    memory, planes = PlaceMemory(), np.zeros((32, 288), np.float32)
     arrays = set()
     for _ in range(200):
         memory.add(planes)
@@ -27,7 +27,7 @@ def test_adding_seldom_copies_what_is_stored() -> None:
 
 
 def test_a_memory_is_made_of_places() -> None:
-    memory = PlaceMemory.of([np.full((9, 1056), value, np.float32) for value in range(3)])
-    assert memory.add(np.full((9, 1056), 3, np.float32)) == 3
+    memory = PlaceMemory.of([np.full((32, 288), value, np.float32) for value in range(3)])
+    assert memory.add(np.full((32, 288), 3, np.float32)) == 3
     np.testing.assert_array_equal(memory.planes[:, 0, 0], range(4))
     assert len(PlaceMemory.of([])) == 0

@@ -59,9 +59,9 @@ def test_places_that_share_nothing_are_left_after_one_strip() -> None:
     cells, empty, others = random_cells(1) + 0.01, np.zeros((32, 32, 8)), 40
     found = search(describe_regions(cells, EVERYWHERE), remember(*[empty] * others, cells))
     assert found.place == others
-    # The first visited are matched whole; of the rest two rows of 31 regions, of 31 rows.
+    # The first visited are matched whole; of the rest four rows of 31 regions, of 31 rows.
     rest = others + 1 - PROBES
-    assert found.matched == pytest.approx((PROBES * 31 + rest * 2) / (31 * (others + 1)))
+    assert found.matched == pytest.approx((PROBES * 31 + rest * 4) / (31 * (others + 1)))
 
 
 def test_places_that_look_alike_are_all_matched() -> None:
@@ -85,8 +85,8 @@ def test_an_outline_is_the_mean_root_of_each_field_at_unit_length() -> None:
     # A whole field of strength 4 in one direction; in another field one of 64 cells, of strength 64 * 64.
     cells[8:16, 24:32, 3] = 4.0
     cells[31, 0, 5] = 4096.0
-    fields = outline(describe_regions(cells, EVERYWHERE).planes).reshape(8, 4, 4)
-    expected = np.zeros((8, 4, 4))
-    expected[3, 1, 3], expected[5, 3, 0] = 2.0, 1.0
+    fields = outline(describe_regions(cells, EVERYWHERE).planes).reshape(4, 8, 4)
+    expected = np.zeros((4, 8, 4))
+    expected[1, 3, 3], expected[3, 5, 0] = 2.0, 1.0
     np.testing.assert_allclose(fields, expected / np.sqrt(5), atol=1e-6)
     assert not outline(describe_regions(np.zeros((32, 32, 8)), EVERYWHERE).planes).any()

@@ -1,6 +1,6 @@
 from __future__ import annotations
 
-from itertools import product
+from itertools import pairwise, product
 
 import numpy as np
 import pytest
@@ -8,7 +8,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from numpy.typing import NDArray
 
-from vprbench_localizers.region_match import describe_regions, score_places
+from vprbench_localizers.region_match import REGIONS, describe_regions, match_rows, room_to_match, score_places
 
 Cells = NDArray[np.float64]
 SEEDS = st.integers(0, 2**32 - 1)
@@ -57,6 +57,37 @@ def test_the_score_is_that_of_the_whole_matrix_of_products(query_seed: int, plac
     best = [(rows @ descriptors(place).T).max(axis=1) for place in places]
     expected = [cosines.mean() if len(rows) else 0.0 for cosines in best]
     np.testing.assert_allclose(score(query, kept, *places), expected, atol=1e-6)
+
+
+def shares(query: Cells, kept: NDArray[np.bool_], place: Cells, bounds: list[int]) -> NDArray[np.float64]:
+    """What each row of regions adds to the score, matched in strips that begin and end at these rows."""
+    asking, buffers, shares = room_to_match(describe_regions(query, kept))
+    planes = describe_regions(place, kept).planes
+    for first, last in pairwise([0, *bounds, REGIONS]):
+        match_rows(asking, planes, first, last, buffers, shares)
+    return shares
+
+
+BOUNDS = st.lists(st.integers(0, REGIONS), max_size=4).map(sorted)
+
+
+@settings(deadline=None, max_examples=30)
+@given(seed=SEEDS, bounds=BOUNDS, border=st.booleans())
+def test_each_row_adds_the_best_products_of_its_regions(seed: int, bounds: list[int], border: bool) -> None:
+    query, place = random_cells(seed), random_cells(seed + 1, empty=0.9)
+    kept = np.random.default_rng(seed).random((31, 31)) < 0.5
+    if border:
+        kept[1:-1, 1:-1] = False
+    best = (descriptors(query) @ descriptors(place).T).max(axis=1).reshape(31, 31)
+    expected = (best * kept).sum(axis=1) / kept.sum()
+    np.testing.assert_allclose(shares(query, kept, place, bounds), expected, atol=1e-7)
+
+
+@settings(deadline=None, max_examples=30)
+@given(seed=SEEDS, bounds=BOUNDS)
+def test_what_a_row_adds_does_not_depend_on_the_strips_by_one_bit(seed: int, bounds: list[int]) -> None:
+    query, place, kept = random_cells(seed), random_cells(seed + 1), np.ones((31, 31), bool)
+    assert shares(query, kept, place, bounds).tolist() == shares(query, kept, place, []).tolist()
 
 
 CORNERS = [(0, 0), (0, 1), (1, 0), (1, 1)]
