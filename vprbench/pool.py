@@ -3,23 +3,20 @@
 from __future__ import annotations
 
 import multiprocessing
-import os
 from collections.abc import Iterator, Sequence
 from concurrent.futures import Future
 from dataclasses import dataclass
 from functools import cache, partial
-from multiprocessing.context import SpawnContext
-from multiprocessing.managers import SyncManager
 from pathlib import Path
-from queue import Empty, Queue
-from threading import Thread
-from time import monotonic, sleep
+from queue import Queue
+from time import monotonic
 
 from pebble import ProcessExpired
 
 from vprbench.crew import Crew
 from vprbench.encoder_store import EncoderStore
 from vprbench.frame_memory import FrameMemory
+from vprbench.message_queue import drain, message_queue, tell
 from vprbench.plugins import one_line
 from vprbench.runner import Outcome, failure, run
 from vprbench.sweep import Job
@@ -63,9 +60,9 @@ class Progress:
 
 def run_all(todo: Sequence[Job], settings: Settings) -> Iterator[Progress | Outcome]:
     """Run jobs; yields their progress, and each outcome as soon as it is known."""
+    message: Progress | Outcome
     context = multiprocessing.get_context("spawn")
-    with _manager(context) as manager:
-        messages: Queue[Progress | Outcome] = manager.Queue()
+    with message_queue(context) as messages:
         work = partial(_work, settings=settings, messages=messages)
         unanswered = {cell: job for job in todo for cell in job.cells}
         lost = False
@@ -73,7 +70,7 @@ def run_all(todo: Sequence[Job], settings: Settings) -> Iterator[Progress | Outc
             crew.begin()
             while crew.is_busy:
                 ended = crew.ended(within=REPORT_EVERY)
-                for message in _drain(messages):
+                for message in drain(messages):
                     if isinstance(message, Outcome):
                         del unanswered[message.cell]
                     yield message
@@ -86,25 +83,7 @@ def run_all(todo: Sequence[Job], settings: Settings) -> Iterator[Progress | Outc
                 crew.assemble()
 
 
-def _manager(context: SpawnContext) -> SyncManager:
-    """The process that holds the queue: unlike a pipe, it survives a worker killed in the middle of a message."""
-    manager = SyncManager(ctx=context)
-    manager.start(_end_with, (os.getpid(),))
-    return manager
-
-
-def _end_with(parent: int) -> None:
-    """Watch the parent, and end when it is gone, since a killed one tells nobody."""
-
-    def watch() -> None:
-        while os.getppid() == parent:
-            sleep(1.0)
-        os._exit(1)
-
-    Thread(target=watch, daemon=True).start()
-
-
-def _work(job: Job, number: int, settings: Settings, messages: Queue[Progress | Outcome]) -> None:
+def _work(job: Job, number: int, settings: Settings, messages: Queue[bytes]) -> None:
     """Run one job in a worker, on one thread: threads of several processes slow each other down."""
     last = -REPORT_EVERY
 
@@ -112,26 +91,17 @@ def _work(job: Job, number: int, settings: Settings, messages: Queue[Progress | 
         nonlocal last
         if done in (0, total) or monotonic() - last >= REPORT_EVERY:
             last = monotonic()
-            messages.put(Progress(number, stage, done, total, note))
+            tell(messages, Progress(number, stage, done, total, note))
 
     with one_thread():
         for outcome in run(job, settings.data, settings.routes_file, report, settings.store, _memory()):
-            messages.put(outcome)
+            tell(messages, outcome)
 
 
 @cache
 def _memory() -> FrameMemory:
     """The frames that this process keeps for its next jobs."""
     return FrameMemory()
-
-
-def _drain(messages: Queue[Progress | Outcome]) -> Iterator[Progress | Outcome]:
-    """Everything the workers have said so far."""
-    while True:
-        try:
-            yield messages.get_nowait()
-        except Empty:
-            return
 
 
 def _fault(future: Future[None], settings: Settings) -> str:

@@ -1,21 +1,24 @@
-"""What a test drive left behind: one row a test frame, enough to score it again without the localizer."""
+"""What a test drive left behind: one row a test frame, enough to score it again without the localizer.
+
+A worker of a sweep makes traces but writes none: pandas and pyarrow are imported by whoever does.
+"""
 
 from __future__ import annotations
 
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
-import pandas as pd
-import pyarrow as pa
-import pyarrow.parquet as pq
 from jaxtyping import Bool, Float64, Int64
 
 from vprbench.atomic import replacing
 from vprbench.errors import DataError, nearest
 from vprbench.readers.number_files import LARGEST
 from vprbench.types import NO_PLACE
+
+if TYPE_CHECKING:
+    import pandas as pd
 
 __all__ = ["Trace"]
 
@@ -101,6 +104,8 @@ class Trace:
 
     def to_frame(self) -> pd.DataFrame:
         """The same rows as a table, one column an attribute."""
+        import pandas as pd
+
         return pd.DataFrame(self._columns())
 
     @classmethod
@@ -124,6 +129,9 @@ class Trace:
         Raises:
             DataError: the file cannot be written.
         """
+        import pyarrow as pa
+        import pyarrow.parquet as pq
+
         try:
             path.parent.mkdir(parents=True, exist_ok=True)
             with replacing(path) as temporary:
@@ -138,6 +146,9 @@ class Trace:
         Raises:
             DataError: the file is missing, damaged or not a trace.
         """
+        import pyarrow as pa
+        import pyarrow.parquet as pq
+
         try:
             with pq.ParquetFile(path, page_checksum_verification=True) as file:
                 rows, table = file.metadata.num_rows, file.read(use_threads=False)

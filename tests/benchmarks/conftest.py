@@ -29,6 +29,7 @@ def pytest_benchmark_update_machine_info(machine_info: dict[str, Any]) -> None:
 
 def pytest_addoption(parser: pytest.Parser) -> None:
     parser.addoption("--ann-places", default="1000,10000", help="sizes of the maps that test_ann.py grows, rising")
+    parser.addoption("--sweep", help="the sweep that test_sweeps.py holds against its cells one by one")
 
 
 class Drawn:

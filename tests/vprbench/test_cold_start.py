@@ -29,6 +29,14 @@ def test_what_needs_no_arrays_imports_none(code: str) -> None:
     assert loaded.isdisjoint(HEAVY)
 
 
+def test_the_process_that_holds_the_messages_of_a_sweep_imports_no_more_than_it_needs() -> None:
+    assert loaded_after("import vprbench.message_queue").isdisjoint({*HEAVY, "vprbench.runner"})
+
+
+def test_a_worker_of_a_sweep_does_without_the_libraries_of_tables() -> None:
+    assert loaded_after("import vprbench.pool").isdisjoint({"pandas", "pyarrow"})
+
+
 @pytest.mark.parametrize(
     "imports",
     [
