@@ -16,11 +16,12 @@ from vprbench.agents import build, build_encoder, normalise
 from vprbench.catalogue import load_route
 from vprbench.encoder_key import encoder_key
 from vprbench.fitting import TrainingFrames, fit
+from vprbench.frame_memory import FrameMemory
 from vprbench.observation import Drive, observe
 from vprbench.pool import Settings
 from vprbench.protocols import DescriptorLocalizer, Encoder, Localizer, Storable
 from vprbench.recruiting import HALVINGS
-from vprbench.route import Route
+from vprbench.route import Route, Traverse
 from vprbench.sweep import Job
 from vprbench.threads import one_thread
 
@@ -50,10 +51,14 @@ class Estimate:
 
 @dataclass(frozen=True)
 class _Measured:
-    """Work of a job but for its encoder's fit, and the seconds of that."""
+    """Work of a job but for its encoder's fit and for getting frames, and the seconds of both.
+
+    What `training_seconds` is to be paid for are the training frames that no job before had got.
+    """
 
     work: Estimate
     fit_seconds: float
+    training_seconds: float
 
 
 @dataclass(frozen=True)
@@ -61,10 +66,13 @@ class Estimator:
     """Estimates the jobs of one sweep, in the order in which they are to run.
 
     Jobs that differ in their seed alone take equally long, so one of them is measured. A fit is charged to the first
-    job that needs it, and to none where the store has it already.
+    job that needs it, and to none where the store has it already. So are the frames of a route, as if one worker played
+    all its jobs; those for which its memory has no room are charged to each.
     """
 
     settings: Settings
+    _memory: FrameMemory = field(default_factory=FrameMemory, init=False)
+    _frame_seconds: dict[str, float] = field(default_factory=dict, init=False)
     _measured: dict[str, _Measured] = field(default_factory=dict, init=False)
     _fits: set[str] = field(default_factory=set, init=False)
 
@@ -74,14 +82,25 @@ class Estimator:
         Raises:
             VprbenchError: the route's data are missing, or the agent cannot be built.
         """
-        route = load_route(job.route, self.settings.data, self.settings.routes_file)
-        config = normalise(job.config)
-        same = json.dumps([job.route, config, [cell.sampling_distance for cell in job.cells]])
-        if same not in self._measured:
-            with one_thread():
-                self._measured[same] = _measure(job, route)
-        work, fit_seconds = self._measured[same].work, self._measured[same].fit_seconds
-        return replace(work, seconds=work.seconds + fit_seconds) if self._must_fit(job, route) else work
+        route = self._memory.share(load_route(job.route, self.settings.data, self.settings.routes_file))
+        same = json.dumps([job.route, normalise(job.config), [cell.sampling_distance for cell in job.cells]])
+        with one_thread():
+            seconds = self._getting(job.route, route)
+            if same not in self._measured:
+                self._measured[same] = _measure(job, route, self._memory, self._frame_seconds[job.route])
+                seconds += self._measured[same].training_seconds
+        if self._must_fit(job, route):
+            seconds += self._measured[same].fit_seconds
+        work = self._measured[same].work
+        return replace(work, seconds=work.seconds + seconds)
+
+    def _getting(self, name: str, route: Route) -> float:
+        """Seconds to read or draw the frames of both drives that no job before has left in the memory."""
+        frames = len(route.learn) + len(route.test)
+        if name in self._frame_seconds:
+            return max(0, frames - self._memory.limit) * self._frame_seconds[name]
+        self._frame_seconds[name] = _frame_seconds(route)
+        return frames * self._frame_seconds[name]
 
     def _must_fit(self, job: Job, route: Route) -> bool:
         """Whether nobody has fitted this encoder before."""
@@ -97,24 +116,41 @@ class Estimator:
         return not known
 
 
-def _measure(job: Job, route: Route) -> _Measured:
-    """Measure an agent on a few frames of its route."""
-    for drive in (*route.training, route.learn, route.test):
-        # Drawing or opening a drive takes time once, which must not be scaled up.
+def _frame_seconds(route: Route) -> float:
+    """Seconds to read or draw a frame; a few of both drives are in the memory from now on."""
+    _open(route.learn, route.test)
+    drives = (Drive(route.learn), Drive(route.test))
+    picked = [(drive, i) for drive in drives for i in sorted({*_picked(drive)} - {0})]
+    started = process_time()
+    for drive, i in picked:
+        drive[i]
+    return (process_time() - started) / max(1, len(picked))
+
+
+def _open(*drives: Traverse) -> None:
+    """Get a first frame of each: drawing or opening a drive takes time once, which must not be scaled up."""
+    for drive in drives:
         observe(drive, 0)
+
+
+def _measure(job: Job, route: Route, memory: FrameMemory, frame_seconds: float) -> _Measured:
+    """Measure an agent on a few frames of its route, given the seconds to get one that is not in the memory."""
+    before = memory.kept
+    _open(*route.training)
     config = normalise(job.config).get("encoder")
     encoder, fitting = (None, 0.0) if config is None else _fitted(lambda: build_encoder(config, job.seed), route)
     localizer = build(job.config, job.seed, encoder)
-    started = process_time()
+    known, started = memory.kept, process_time()
     # Of all frames: how many of them a localizer takes is its own affair.
     localizer.fit([Drive(drive) for drive in route.training])
-    calibrating = process_time() - started
+    calibrating = max(0.0, process_time() - started - (memory.kept - known) * frame_seconds)
+    getting = (memory.kept - before) * frame_seconds
     if isinstance(localizer, DescriptorLocalizer):
         work = _by_matrix(job, route, localizer)
     else:
         work = _by_playing(job, route, localizer)
     training = sum(map(len, route.training))
-    return _Measured(Estimate(work.frames + training, work.pairs, work.seconds + calibrating), fitting)
+    return _Measured(Estimate(work.frames + training, work.pairs, work.seconds + calibrating), fitting, getting)
 
 
 def _fitted(make: Callable[[], Encoder], route: Route) -> tuple[Encoder, float]:
@@ -127,6 +163,7 @@ def _fitted(make: Callable[[], Encoder], route: Route) -> tuple[Encoder, float]:
     # The first is not counted: it may compile.
     for few in (SAMPLE // 2, SAMPLE // 2, SAMPLE):
         sample = TrainingFrames([Drive(drive)[:: max(1, len(drive) // few)][:few] for drive in route.training])
+        list(sample)  # from now on in the memory
         encoder, started = make(), process_time()
         fit(encoder, sample)
         taken.append(process_time() - started)
@@ -171,7 +208,7 @@ def _pairs(job: Job, route: Route, localizer: Localizer) -> int:
 
 
 def _matrix_costs(route: Route, localizer: DescriptorLocalizer[Any]) -> tuple[float, float]:
-    """Seconds to get and describe a frame, and to compare a pair."""
+    """Seconds to describe a frame that is at hand, and to compare a pair."""
     drive = Drive(route.test, gps=False)
     picked = _picked(drive)
     described = [localizer.describe(drive[i]) for i in picked[:2]]
@@ -184,7 +221,7 @@ def _matrix_costs(route: Route, localizer: DescriptorLocalizer[Any]) -> tuple[fl
 
 
 def _playing_costs(route: Route, localizer: Localizer) -> tuple[float, float]:
-    """Seconds to get a frame and look at it, and to hold it against one place."""
+    """Seconds to look at a frame that is at hand, and to hold it against one place."""
     learn, test = Drive(route.learn), Drive(route.test, gps=False)
     localizer.clear(1.0 if localizer.recruiting == "vigilance" else SHORT_STEP)
     localizer.learn(learn[0])
@@ -197,7 +234,7 @@ def _playing_costs(route: Route, localizer: Localizer) -> tuple[float, float]:
 
 
 def _answering(localizer: Localizer, drive: Drive) -> float:
-    """Seconds to get and answer a frame, a typical one: a hiccup of the machine does not count."""
+    """Seconds to answer a frame that is at hand, a typical one: a hiccup of the machine does not count."""
     taken = []
     for i in _picked(drive):
         started = process_time()

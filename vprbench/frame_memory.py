@@ -43,9 +43,14 @@ class FrameMemory:
         training = tuple(shared(drive) for drive in route.training)
         return replace(route, learn=shared(route.learn), test=shared(route.test), training=training)
 
+    @property
+    def kept(self) -> int:
+        """How many frames there are."""
+        return sum(map(len, self._routes.values()))
+
     def has_room(self) -> bool:
         """Whether the route played last may keep one more frame, others being forgotten for it if need be."""
-        while sum(map(len, self._routes.values())) >= self.limit:
+        while self.kept >= self.limit:
             if len(self._routes) == 1:
                 return False
             del self._routes[next(iter(self._routes))]

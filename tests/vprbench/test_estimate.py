@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from dataclasses import dataclass, replace
 from pathlib import Path
 
 import numpy as np
@@ -12,10 +13,11 @@ from jaxtyping import Float32
 from vprbench import estimate as module
 from vprbench.encoder_store import EncoderStore
 from vprbench.estimate import Estimator
+from vprbench.frame_memory import FrameMemory
 from vprbench.pool import Settings
 from vprbench.protocols import Recruiting
 from vprbench.recruiting import Odometer
-from vprbench.route import Route
+from vprbench.route import FrameSource, Route, Traverse
 from vprbench.runner import run
 from vprbench.sweep import Cell, Job
 from vprbench.types import Frame, Landmarks, Observation, Responses
@@ -23,7 +25,7 @@ from vprbench.types import Frame, Landmarks, Observation, Responses
 Signatures = Float32[np.ndarray, "rows size"]
 
 JOB = Job("toy", "fake", 0, {"localizer": "fake"}, tuple(Cell("toy", "fake", float(d), 0) for d in (4, 8)))
-SECONDS_A_FRAME, SECONDS_A_PLACE = 3.0, 0.25
+SECONDS_A_FRAME, SECONDS_A_PLACE, SECONDS_TO_READ = 3.0, 0.25, 2.0
 
 
 class Fake:
@@ -35,7 +37,7 @@ class Fake:
         self.now = 0.0
 
     def fit(self, drives: Sequence[Sequence[Observation]]) -> None:
-        self.fitted += sum(map(len, drives))
+        self.fitted += sum(1 for drive in drives for _ in drive)
 
     def clear(self, sampling: float) -> None:
         self.sampling, self.odometer, self.places = sampling, Odometer(sampling), list[float]()
@@ -97,6 +99,53 @@ def test_the_halvings_of_a_vigilance_are_counted(fake: Fake) -> None:
     list(run(JOB))
     assert 0.1 * said.frames < fake.played < said.frames
     assert 0.1 * said.seconds < fake.now
+
+
+@dataclass
+class SlowFrames:
+    """Frames that take their time to read, by the clock of the localizer."""
+
+    source: FrameSource
+    fake: Fake
+
+    def __getitem__(self, index: int, /) -> Frame:
+        self.fake.now += SECONDS_TO_READ
+        return self.source[index]
+
+
+@pytest.fixture
+def slowly_read(fake: Fake, toy_route: Route, monkeypatch: pytest.MonkeyPatch) -> Route:
+    def slow(drive: Traverse) -> Traverse:
+        return replace(drive, frames=SlowFrames(drive.frames, fake))
+
+    training = tuple(map(slow, toy_route.training))
+    made = replace(toy_route, learn=slow(toy_route.learn), test=slow(toy_route.test), training=training)
+    for module_name in ("vprbench.estimate", "vprbench.runner"):
+        monkeypatch.setattr(f"{module_name}.load_route", lambda *names, **paths: made)
+    return made
+
+
+@pytest.mark.parametrize("fake", ["step"], indirect=True)
+def test_the_frames_of_a_route_are_charged_to_the_first_of_its_jobs(fake: Fake, slowly_read: Route) -> None:
+    others = [replace(JOB, seed=1), replace(JOB, cells=tuple(Cell("toy", "fake", float(d), 0) for d in (5, 10)))]
+    estimator = Estimator(Settings())
+    said = [estimator.estimate(job).seconds for job in (JOB, *others)]
+    assert said[0] - said[1] == pytest.approx(SECONDS_TO_READ * (41 + 30 + 10))
+    fake.now, memory = 0.0, FrameMemory()
+    for job in (JOB, *others):
+        assert all(outcome.row["error"] == "" for outcome in run(job, memory=memory))
+    assert sum(said) == pytest.approx(fake.now, rel=0.05)
+
+
+@pytest.mark.parametrize("fake", ["step"], indirect=True)
+def test_frames_for_which_there_is_no_room_are_charged_to_every_job(fake: Fake, slowly_read: Route) -> None:
+    seconds = []
+    for limit in (1000, 50):
+        estimator = Estimator(Settings())
+        object.__setattr__(estimator, "_memory", FrameMemory(limit))
+        estimator.estimate(JOB)
+        seconds.append(estimator.estimate(replace(JOB, seed=1)).seconds)
+    assert seconds[1] - seconds[0] == pytest.approx(SECONDS_TO_READ * (41 + 30 - 50))
 
 
 class Learner:
