@@ -103,6 +103,22 @@ def _asked(query: Description) -> tuple[Int64[np.ndarray, "8"], float]:
     return np.array(regions), float(shares.max())
 
 
+@njit(cache=True)
+def _rows(strip: int) -> tuple[int, int]:
+    """First row of a strip, and the first one after it."""
+    return strip * STRIP, min(strip * STRIP + STRIP, REGIONS)
+
+
+@njit(cache=True)
+def _order(regions: NDArray[np.int64], most: float, probed: NDArray[np.float64]) -> NDArray[np.int64]:
+    """Strips by how much was missed in them: the most that their regions can add, less what they did add."""
+    missed = regions * most
+    for strip in range(STRIPS):
+        first, last = _rows(strip)
+        missed[strip] -= probed[first:last].sum()
+    return np.argsort(-missed)
+
+
 @njit(cache=True, nogil=True)
 def _visit(
     query: Description,
@@ -113,21 +129,23 @@ def _visit(
 ) -> tuple[int, np.float32, int]:
     """Index and score of the best place, and how many regions were matched in all."""
     query, buffers, shares = room_to_match(query)
-    order, missed = np.arange(STRIPS), np.zeros(STRIPS)
+    order, probed = np.arange(STRIPS), np.zeros(REGIONS)
     best, best_score, matched = -1, np.float32(0), 0
     for visit in range(len(visits)):
-        if visit == PROBES:
-            order = np.argsort(-missed)
         k, reach = visits[visit], share * regions.sum()
-        for strip in order:
-            if visit >= PROBES and reach + SLACK < best_score:
-                break
-            first, last = int(strip) * STRIP, min(int(strip) * STRIP + STRIP, REGIONS)
-            match_rows(query, places[k], first, last, buffers, shares)
-            miss = share * regions[strip] - shares[first:last].sum()
-            missed[strip] += miss
-            reach -= miss
-            matched += regions[strip]
+        if visit < PROBES:
+            match_rows(query, places[k], 0, REGIONS, buffers, shares)
+            matched += regions.sum()
+            probed += shares
+            order = _order(regions, share * (visit + 1), probed)
+        else:
+            for strip in order:
+                if reach + SLACK < best_score:
+                    break
+                first, last = _rows(int(strip))
+                match_rows(query, places[k], first, last, buffers, shares)
+                reach -= share * regions[strip] - shares[first:last].sum()
+                matched += regions[strip]
         # A place that was left is out of reach; in the strips that were not matched its shares are another's.
         if reach + SLACK >= best_score:
             score = total(shares)
