@@ -3,16 +3,21 @@
 Group "locate one query" times those that find the best place without the response of every place, against all responses
 at the same turn: `extra_info["per_respond"]` is the ratio of the CPU times of both, over several queries.
 
+Group "answer one query on every core" times those that have the option `threads`: `extra_info["quicker"]` is the time
+of one thread by the clock over that of as many as there are cores, at the same turn.
+
 One that looks through an encoder is timed with each registered encoder; but with `ENCODER` alone where it has no
 `compare`, since its time does not tell encoders apart.
 """
 
 from __future__ import annotations
 
+import os
 from collections.abc import Callable, Iterator
 from functools import cache
 from itertools import cycle, islice
-from time import process_time
+from statistics import median
+from time import perf_counter, process_time
 from typing import Any, TypeAlias
 
 import numpy as np
@@ -46,6 +51,7 @@ def agents() -> Iterator[Agent]:
 
 
 AGENTS = list(agents())
+THREADED = [agent for agent in AGENTS if "threads" in parameters(find("localizer", agent["localizer"]).load())]
 
 
 class Memory:
@@ -123,6 +129,31 @@ def test_respond(
     assert memory.localizer.respond(next(queries)).shape == (places,)
     benchmark.extra_info |= {**agent, "places": places}
     benchmark(lambda: memory.localizer.respond(next(queries)))
+
+
+@pytest.mark.benchmark(group="answer one query on every core")
+@pytest.mark.parametrize("places", [100, 1000])
+@pytest.mark.parametrize("agent", THREADED, ids=label)
+def test_respond_on_every_core(
+    benchmark: BenchmarkFixture, memory: Memory, queries: Iterator[Observation], agent: Agent, places: int
+) -> None:
+    memory.hold(places)
+    localizer: Any = memory.localizer
+    cores = os.cpu_count() or 1
+
+    def seconds(threads: int, query: Observation) -> float:
+        localizer.threads = threads
+        started = perf_counter()
+        localizer.respond(query)
+        return perf_counter() - started
+
+    try:
+        benchmark(lambda: seconds(cores, next(queries)))
+        turns = [(seconds(1, query), seconds(cores, query)) for query in islice(queries, 10 if benchmark.stats else 1)]
+    finally:
+        localizer.threads = 1
+    quicker = median(one / all_ for one, all_ in turns)
+    benchmark.extra_info |= {**agent, "places": places, "cores": cores, "quicker": quicker}
 
 
 @pytest.mark.benchmark(group="locate one query")

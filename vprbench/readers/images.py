@@ -5,6 +5,7 @@ from __future__ import annotations
 import hashlib
 import zlib
 from dataclasses import dataclass
+from functools import cached_property
 from pathlib import Path
 
 import cv2
@@ -14,6 +15,7 @@ from jaxtyping import Float64, UInt8
 from vprbench.errors import DataError
 from vprbench.readers.bayer import Bayer, demosaiced
 from vprbench.readers.crop import Crop
+from vprbench.readers.read_ahead import ReadAhead
 from vprbench.route import Camera
 from vprbench.types import FRAME_HEIGHT, FRAME_WIDTH, Frame
 
@@ -47,6 +49,13 @@ class ImageFiles:
 
     def __getitem__(self, index: int, /) -> Frame:
         """Frame `index`, reduced by pixel area; DataError where its file is not a whole 8-bit image."""
+        return self._ahead.get(range(len(self.paths))[index])
+
+    @cached_property
+    def _ahead(self) -> ReadAhead:
+        return ReadAhead(self._read, len(self.paths))
+
+    def _read(self, index: int) -> Frame:
         path = self.paths[index]
         image = read_grey(path, colour=self.colour)
         if self.size is not None and image.shape[::-1] != self.size:
