@@ -69,8 +69,11 @@ def _activity(
             azimuth = units.azimuths[ahead + at]
             _recognise(recognised, amounts, lengths, units, ahead + at, np.float32(threshold))
             for p in range(len(recognised)):
+                # By itself, since it runs in vector lanes, where a branch on each turn would not.
+                recognised[p] = recognised[p] if turn(azimuths[p], azimuth) <= reach else np.float32(0)
+            for p in range(len(recognised)):
                 # An activity above the recognition is above its product with any agreement.
-                if recognised[p] > activity[at] and turn(azimuths[p], azimuth) <= reach:
+                if recognised[p] > activity[at]:
                     activity[at] = max(activity[at], product(recognised[p], azimuths[p], azimuth, width))
     return activity
 
