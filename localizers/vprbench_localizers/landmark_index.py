@@ -26,7 +26,10 @@ SECTORS = 36
 # looks are worth.
 RADIUS = 3.0
 
-# Rounds of k-means that look for typical looks (our choice: more did not help).
+# The vote of a pair that looks less alike than not at all, so that its place is still found if all are asked for.
+LEAST = 1e-6
+
+# Rounds of k-means that look for typical looks (our choice).
 ROUNDS = 10
 
 
@@ -46,15 +49,19 @@ class LandmarkIndex:
         samples: signatures among which typical looks are sought, at least one.
         looks: at most so many, and not more than samples.
         probes: so many looks are looked for with each landmark of a query.
+        likeness: landmarks less alike do not count, 1: only equal ones.
         span: all sectors with azimuths at most so far from the query's are looked into, radians; inf: azimuths play
             no part.
     """
 
-    def __init__(self, samples: Float32[np.ndarray, "samples size"], *, looks: int, probes: int, span: float) -> None:
+    def __init__(
+        self, samples: Float32[np.ndarray, "samples size"], *, looks: int, probes: int, likeness: float, span: float
+    ) -> None:
         import faiss
 
         faiss.omp_set_num_threads(1)
         self._fold = fold_of(samples.shape[1])
+        self._likeness = likeness
         self._span, self._sectors = span, SECTORS if isfinite(span) else 1
         # Where all azimuths agree they must not part landmarks in the index either.
         self._weight = RADIUS if isfinite(span) else 0.0
@@ -62,39 +69,37 @@ class LandmarkIndex:
         self._looks = _typical(vectors[:, :FOLDED].copy(), min(looks, len(samples)))
         self._probes = min(probes, len(self._looks))
         self._lists = _lists(self._sectors * len(self._looks), self._weight)
+        self._places = 0
 
     def clear(self) -> None:
         """Forget every landmark; the typical looks stay."""
         self._lists.reset()
+        self._places = 0
 
     def add(self, view: View, place: int) -> None:
-        """Store the landmarks of a place."""
+        """Store the landmarks of a place, numbered from 0."""
         from faiss.contrib.ivf_tools import add_preassigned
 
         vectors = self._vectors(view)
         nearest = np.argmax(vectors[:, :FOLDED] @ self._looks.T, axis=1)
         lists = self._sector(view.azimuths) % self._sectors * len(self._looks) + nearest
         add_preassigned(self._lists, vectors, lists, np.full(len(vectors), place))
+        self._places = max(self._places, place + 1)
 
-    def places_like(self, view: View, neighbours: int, most: int) -> Int64[np.ndarray, " places"]:
-        """The places that share most of the neighbours of a query's landmarks, each once, rising.
+    def places_like(self, view: View, most: int) -> Int64[np.ndarray, " places"]:
+        """The places whose landmarks look most like a query's, at most so many, each once, rising."""
+        from faiss.contrib.ivf_tools import range_search_preassigned
 
-        Args:
-            view: the query.
-            neighbours: so many stored landmarks, those most like it, are found for each of the query's.
-            most: of the places of all these, so many, by the sum of how alike they look.
-        """
-        from faiss.contrib.ivf_tools import search_preassigned
-
-        vectors = self._vectors(view)
+        if not self._places:
+            return np.empty(0, np.int64)
+        vectors, agreed = self._vectors(view), self._weight**2
         lists = self._lists_about(vectors, view.azimuths)
         self._lists.nprobe = lists.shape[1]
-        products, places = search_preassigned(self._lists, vectors, neighbours, lists)
-        found = places >= 0
-        reached, which = np.unique(places[found], return_inverse=True)
-        # Azimuths that agree give the same to all.
-        votes = np.bincount(which, np.maximum(products[found] - self._weight**2, 0), len(reached))
-        return reached if len(reached) <= most else np.sort(reached[np.argpartition(-votes, most)[:most]])
+        _, products, places = range_search_preassigned(self._lists, vectors, agreed + self._likeness, lists)
+        # Azimuths that agree give the same to all. Squared, one pair much alike counts for more than two that are less.
+        votes = np.bincount(places, np.maximum(products - agreed, LEAST) ** 2, self._places)
+        most = min(most, np.count_nonzero(votes))
+        return np.sort(np.argpartition(-votes, most - 1)[:most]) if most else np.empty(0, np.int64)
 
     def _vectors(self, view: View) -> Float32[np.ndarray, "points 64"]:
         return landmark_vectors(view, self._fold, self._weight)

@@ -33,8 +33,8 @@ SPAN = 1.0
 class MaxPiAnn:
     """A localizer whose places respond exactly as Max-Pi's if they are reached, and 0 if not.
 
-    A place is reached if its landmarks are among the stored ones most like the query's, in look and in direction,
-    and look more alike than those of other such places. Learning, too, goes by the responses of places reached.
+    Places are reached whose landmarks are together most like the query's, in look and in direction. Learning, too, goes
+    by the responses of places reached.
 
     Args:
         encoder: see `MaxPi`.
@@ -42,10 +42,10 @@ class MaxPiAnn:
         azimuth_width_deg: see `MaxPi`.
         azimuth_reach: see `MaxPi`.
         recognition_threshold: see `MaxPi`.
-        neighbours: so many stored landmarks are found for each of the query's (our choice).
         candidates: at most so many places are reached (our choice).
         looks: by which the index sorts landmarks; more are quicker to search and slower to learn (our choice).
         probes: so many of the looks are searched for each landmark (our choice).
+        likeness: landmarks less alike do not count, 1: only equal ones (our choice).
 
     Raises:
         ConfigError: an option is out of its range, or faiss is not installed.
@@ -61,18 +61,20 @@ class MaxPiAnn:
         azimuth_width_deg: float | None = 5.0,
         azimuth_reach: float = 3.0,
         recognition_threshold: float | None = None,
-        neighbours: int = 2000,
-        candidates: int = 5000,
+        candidates: int = 10_000,
         looks: int = 256,
-        probes: int = 4,
+        probes: int = 8,
+        likeness: float = 0.3,
     ) -> None:
-        counts = {"neighbours": neighbours, "candidates": candidates, "looks": looks, "probes": probes}
+        counts = {"candidates": candidates, "looks": looks, "probes": probes}
         for name, value in counts.items():
             if value < 1:
                 raise ConfigError(f"max-pi-ann: {name} must be 1 or more, not {value!r}")
+        if not likeness <= 1:
+            raise ConfigError(f"max-pi-ann: likeness must be at most 1, not {likeness!r}")
         require_faiss()
         self.encoder = encoder
-        self.neighbours, self.candidates, self.looks, self.probes = neighbours, candidates, looks, probes
+        self.candidates, self.looks, self.probes, self.likeness = candidates, looks, probes, likeness
         self._exact = MaxPi(
             encoder,
             azimuth_width_deg=azimuth_width_deg,
@@ -95,8 +97,13 @@ class MaxPiAnn:
         samples = [view.signatures for view in views if len(view.azimuths)]
         if not samples:
             raise DataError("max-pi-ann: the training drives show no landmark to set up the index by; give others")
-        span = SPAN * self._exact.rule.width
-        self._index = LandmarkIndex(np.concatenate(samples), looks=self.looks, probes=self.probes, span=span)
+        self._index = LandmarkIndex(
+            np.concatenate(samples),
+            looks=self.looks,
+            probes=self.probes,
+            likeness=self.likeness,
+            span=SPAN * self._exact.rule.width,
+        )
         self.clear(self.vigilance)
 
     def clear(self, sampling: float) -> None:
@@ -137,7 +144,7 @@ class MaxPiAnn:
         responses = np.zeros(len(self._views), np.float32)
         if len(query.azimuths) and len(self._views):
             self._views.require(query.signatures.shape[1])
-            reached = index.places_like(query, self.neighbours, self.candidates)
+            reached = index.places_like(query, self.candidates)
             responses[reached] = self._ask(query, reached)
         return responses
 

@@ -54,14 +54,14 @@ def test_where_every_landmark_is_reached_it_is_max_pi_bit_by_bit(
     # Azimuths of one width apart are looked for: that far they may agree.
     shared: dict[str, Any] = {"azimuth_width_deg": width, "azimuth_reach": 1.0}
     exact = learned(MaxPi(encoder, **shared), toy_route)
-    everywhere = learned(MaxPiAnn(encoder, **shared, neighbours=10**4, looks=4, probes=4), toy_route)
+    everywhere = learned(MaxPiAnn(encoder, **shared, looks=4, probes=4, likeness=-9.0), toy_route)
     for query in Drive(toy_route.test, gps=False)[::8]:
         np.testing.assert_array_equal(everywhere.respond(query), exact.respond(query))
 
 
 def test_a_place_responds_as_in_max_pi_or_not_at_all(encoder: Encoder, toy_route: Route) -> None:
     exact = learned(MaxPi(encoder), toy_route)
-    nearest = learned(MaxPiAnn(encoder, neighbours=5, candidates=4, looks=8, probes=2), toy_route)
+    nearest = learned(MaxPiAnn(encoder, candidates=4, looks=8, probes=2), toy_route)
     silent = 0
     for query in Drive(toy_route.test, gps=False)[::5]:
         asked, told = exact.respond(query), nearest.respond(query)
@@ -72,7 +72,7 @@ def test_a_place_responds_as_in_max_pi_or_not_at_all(encoder: Encoder, toy_route
 
 
 def test_it_is_built_from_its_name_and_offers_no_matrix_of_responses() -> None:
-    localizer = build({"localizer": "max-pi-ann", "encoder": "log-polar-6", "neighbours": 5})
+    localizer = build({"localizer": "max-pi-ann", "encoder": "log-polar-6", "candidates": 5})
     assert isinstance(localizer, MaxPiAnn)
     # A response depends on which other places are nearer.
     assert not isinstance(localizer, DescriptorLocalizer)
@@ -106,7 +106,7 @@ def test_training_drives_without_landmarks_are_refused() -> None:
 @pytest.mark.parametrize(
     ("options", "text"),
     [
-        ({"neighbours": 0}, "neighbours must be 1 or more"),
+        ({"likeness": 1.5}, "likeness must be at most 1"),
         ({"candidates": 0}, "candidates must be 1 or more"),
         ({"looks": 0}, "looks must be 1 or more"),
         ({"probes": -1}, "probes must be 1 or more"),
