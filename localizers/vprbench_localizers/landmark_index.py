@@ -96,9 +96,9 @@ class LandmarkIndex:
         lists = self._lists_about(vectors, view.azimuths)
         self._lists.nprobe = lists.shape[1]
         _, products, places = range_search_preassigned(self._lists, vectors, agreed + self._likeness, lists)
-        # Azimuths that agree give the same to all. Squared, one pair much alike counts for more than two that are less.
+        # Azimuths that agree give the same to all. Squared, a pair much alike counts for several that are less.
         votes = np.bincount(places, np.maximum(products - agreed, LEAST) ** 2, self._places)
-        most = min(most, np.count_nonzero(votes))
+        most = min(most, int(np.count_nonzero(votes)))
         return np.sort(np.argpartition(-votes, most - 1)[:most]) if most else np.empty(0, np.int64)
 
     def _vectors(self, view: View) -> Float32[np.ndarray, "points 64"]:
