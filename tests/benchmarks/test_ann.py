@@ -3,7 +3,7 @@
 A place is put together of two frames of a route: of its landmarks each is that of one frame or the other, and keeps
 about 3 in 5 values of its signature, to which 2 in 5 of another landmark's are added; then the place is turned to one
 of four directions. The first places are the learn drive's own. Queries are the frames of the test drive, whose road is
-in the map, and the same turned by a quarter, as if on roads that are not.
+in the map, and the same turned by a quarter, as if from roads that the learn drive never took.
 
     pytest tests/benchmarks/test_ann.py --benchmark-only --ann-places 1000,10000,100000,1000000
 
