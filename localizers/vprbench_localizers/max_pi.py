@@ -102,7 +102,7 @@ class MaxPi:
     def learn(self, observation: Observation) -> int | None:
         """Make this observation a place if no place responds to it as strongly as the vigilance."""
         view = self.describe(observation)
-        responses = self._memory.respond(view, self._rule)
+        responses = self.answer(view)
         if len(responses) and np.fmax.reduce(responses) >= np.float32(self.vigilance):
             return None
         return self.store(view)
@@ -113,7 +113,11 @@ class MaxPi:
 
     def respond(self, observation: Observation) -> Responses:
         """Response 0..1 of every learned place."""
-        return self._memory.respond(self.describe(observation), self._rule)
+        return self.answer(self.describe(observation))
+
+    def answer(self, query: View) -> Responses:
+        """Response of every learned place to a description."""
+        return self._memory.respond(query, self.rule)
 
     def describe(self, observation: Observation) -> View:
         """The signatures and azimuths of one observation's landmarks."""
@@ -130,7 +134,7 @@ class MaxPi:
             for place in places[first : first + BLOCK]:
                 memory.add(place)
             for query, row in zip(queries, responses, strict=True):
-                row[first : first + BLOCK] = memory.respond(query, self._rule)
+                row[first : first + BLOCK] = memory.respond(query, self.rule)
         return responses
 
     def _heading(self, observation: Observation) -> float:
@@ -145,7 +149,12 @@ class MaxPi:
         return 0.0
 
     @property
-    def _rule(self) -> Rule:
+    def rule(self) -> Rule:
+        """What makes a unit active.
+
+        Raises:
+            ConfigError: there is no recognition threshold yet.
+        """
         if self.recognition_threshold is None:
             raise ConfigError("max-pi: no recognition threshold: call fit(drives), or give recognition_threshold")
         return Rule(self.recognition_threshold, self._width, self._reach)

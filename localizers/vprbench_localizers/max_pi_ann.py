@@ -1,4 +1,4 @@
-"""Max-Pi for large maps: only places that have a landmark much like one of the query's are asked.
+"""Max-Pi for large maps: only places that have landmarks much like the query's are asked.
 
 Needs faiss: `pip install 'vprbench[ann]'`.
 """
@@ -6,17 +6,18 @@ Needs faiss: `pip install 'vprbench[ann]'`.
 from __future__ import annotations
 
 from collections.abc import Sequence
-from math import isfinite, pi
 from typing import ClassVar
 
 import numpy as np
+from jaxtyping import Int64
 
 from vprbench.errors import ConfigError, DataError
-from vprbench.geodesy import wrap
 from vprbench.protocols import Encoder, Recruiting
 from vprbench.types import Observation, Responses
-from vprbench_localizers.landmark_index import LandmarkIndex, landmark_vectors, require_faiss
+from vprbench_localizers.landmark_index import LandmarkIndex, require_faiss
+from vprbench_localizers.matching import OverlapEncoder
 from vprbench_localizers.max_pi import MaxPi
+from vprbench_localizers.overlap_response import overlap_responses
 from vprbench_localizers.sparse_views import SparseViews
 from vprbench_localizers.unit_activity import View
 
@@ -25,15 +26,15 @@ __all__ = ["MaxPiAnn"]
 # At most so many training frames give samples for the index, evenly spaced (our choice).
 SAMPLE_FRAMES = 400
 
-# By which the azimuths of those frames are turned, radians (our choice).
-TURNS = (0.0, pi / 2, pi, -pi / 2)
+# Azimuths of so many widths apart are looked for (our choice: there the Gaussian is 0.6).
+SPAN = 1.0
 
 
 class MaxPiAnn:
     """A localizer whose places respond exactly as Max-Pi's if they are reached, and 0 if not.
 
-    A place is reached if one of its landmarks is among the stored ones most like one of the query's, in look and in
-    direction. Learning, too, goes by the responses of places reached.
+    Places are reached whose landmarks are together most like the query's, in look and in direction. Learning, too, goes
+    by the responses of places reached.
 
     Args:
         encoder: see `MaxPi`.
@@ -41,9 +42,10 @@ class MaxPiAnn:
         azimuth_width_deg: see `MaxPi`.
         azimuth_reach: see `MaxPi`.
         recognition_threshold: see `MaxPi`.
-        neighbours: so many stored landmarks are reached from each of the query's (our choice).
-        lists: into which the index sorts landmarks; more are quicker to search and slower to learn (our choice).
-        probes: so many of the lists are searched for each landmark (our choice).
+        candidates: at most so many places are reached (our choice).
+        looks: by which the index sorts landmarks; more are quicker to search and slower to learn (our choice).
+        probes: so many of the looks are searched for each landmark (our choice).
+        likeness: landmarks less alike do not count, 1: only equal ones (our choice).
 
     Raises:
         ConfigError: an option is out of its range, or faiss is not installed.
@@ -59,24 +61,26 @@ class MaxPiAnn:
         azimuth_width_deg: float | None = 5.0,
         azimuth_reach: float = 3.0,
         recognition_threshold: float | None = None,
-        neighbours: int = 30,
-        lists: int = 1024,
-        probes: int = 4,
+        candidates: int = 10_000,
+        looks: int = 256,
+        probes: int = 8,
+        likeness: float = 0.3,
     ) -> None:
-        for name, value in (("neighbours", neighbours), ("lists", lists), ("probes", probes)):
+        counts = {"candidates": candidates, "looks": looks, "probes": probes}
+        for name, value in counts.items():
             if value < 1:
                 raise ConfigError(f"max-pi-ann: {name} must be 1 or more, not {value!r}")
+        if not likeness <= 1:
+            raise ConfigError(f"max-pi-ann: likeness must be at most 1, not {likeness!r}")
         require_faiss()
         self.encoder = encoder
-        self.neighbours, self.lists, self.probes = neighbours, lists, probes
+        self.candidates, self.looks, self.probes, self.likeness = candidates, looks, probes, likeness
         self._exact = MaxPi(
             encoder,
             azimuth_width_deg=azimuth_width_deg,
             azimuth_reach=azimuth_reach,
             recognition_threshold=recognition_threshold,
         )
-        # Where all azimuths agree they must not part landmarks in the index either.
-        self._azimuth_weight = 1.0 if azimuth_width_deg is not None and isfinite(azimuth_width_deg) else 0.0
         self._index: LandmarkIndex | None = None
         self.clear(vigilance)
 
@@ -90,12 +94,16 @@ class MaxPiAnn:
         chosen = [(drive, index) for drive in drives for index in range(len(drive))]
         kept = np.linspace(0, len(chosen) - 1, min(SAMPLE_FRAMES, len(chosen))).round().astype(int)
         views = [self.describe(chosen[k][0][chosen[k][1]]) for k in kept]
-        # A training drive goes in few directions, a large map in all.
-        turned = [_turned(view, turn) for view in views for turn in TURNS]
-        samples = [landmark_vectors(view, self._azimuth_weight) for view in turned if len(view.azimuths)]
+        samples = [view.signatures for view in views if len(view.azimuths)]
         if not samples:
             raise DataError("max-pi-ann: the training drives show no landmark to set up the index by; give others")
-        self._index = LandmarkIndex(np.concatenate(samples), self.lists, self.probes)
+        self._index = LandmarkIndex(
+            np.concatenate(samples),
+            looks=self.looks,
+            probes=self.probes,
+            likeness=self.likeness,
+            span=SPAN * self._exact.rule.width,
+        )
         self.clear(self.vigilance)
 
     def clear(self, sampling: float) -> None:
@@ -127,25 +135,26 @@ class MaxPiAnn:
         index = self._fitted()
         place = self._views.add(view)
         if len(view.azimuths):
-            index.add(landmark_vectors(view, self._azimuth_weight))
+            index.add(view, place)
         return place
 
     def answer(self, query: View) -> Responses:
         """Response of every place to a view."""
         index = self._fitted()
         responses = np.zeros(len(self._views), np.float32)
-        if self._views.units and len(query.azimuths):
-            units = index.nearest(landmark_vectors(query, self._azimuth_weight), self.neighbours)
-            reached = np.unique(self._views.places_of(units))
-            responses[reached] = self._exact.compare([query], [self._views[place] for place in reached])[0]
+        if len(query.azimuths) and len(self._views):
+            self._views.require(query.signatures.shape[1])
+            reached = index.places_like(query, self.candidates)
+            responses[reached] = self._ask(query, reached)
         return responses
+
+    def _ask(self, query: View, places: Int64[np.ndarray, " reached"]) -> Responses:
+        """Response of these places, as Max-Pi's."""
+        if isinstance(self.encoder, OverlapEncoder) and self.encoder.matches_by_overlap:
+            return overlap_responses(query, self._views.units, places, self._exact.rule)
+        return self._exact.compare([query], [self._views[place] for place in places])[0]
 
     def _fitted(self) -> LandmarkIndex:
         if self._index is None:
             raise ConfigError("max-pi-ann: the index is not set up: call fit(drives)")
         return self._index
-
-
-def _turned(view: View, turn: float) -> View:
-    """The same landmarks, as if the camera had been headed otherwise by `turn` radians."""
-    return View(view.signatures, wrap(view.azimuths.astype(np.float64) + turn).astype(np.float32))

@@ -21,7 +21,7 @@ from vprbench_localizers.posting_lists import (
 )
 from vprbench_localizers.unit_activity import Rule, View, mean_by_place, product
 
-__all__ = ["OverlapMemory"]
+__all__ = ["OverlapMemory", "code_length"]
 
 # Far above what float32 can do to the difference of two azimuths, radians.
 ROUNDING = 1e-5
@@ -87,7 +87,7 @@ class OverlapMemory:
 
 
 @njit(cache=True)
-def _length(signature: NDArray[np.float32]) -> np.float32:
+def code_length(signature: NDArray[np.float32]) -> np.float32:
     """L1 of a signature; 1 of one that is zero throughout, see `Postings`."""
     length = np.float32(0)
     for value in signature:
@@ -98,7 +98,7 @@ def _length(signature: NDArray[np.float32]) -> np.float32:
 @njit(cache=True)
 def _measure(signatures: NDArray[np.float32], lengths: NDArray[np.float32]) -> None:
     for row in range(len(signatures)):
-        lengths[row] = _length(signatures[row])
+        lengths[row] = code_length(signatures[row])
 
 
 @njit(cache=True)
@@ -119,7 +119,7 @@ def _excite(
     met = np.empty(len(activity) + 1, np.uint32)
     scale = np.float32(1) - np.float32(threshold)
     for p in range(len(queries)):
-        azimuth, length = query_azimuths[p], _length(queries[p])
+        azimuth, length = query_azimuths[p], code_length(queries[p])
         for k in range(_meet(queries[p], azimuth, reach, postings, common, met)):
             m = met[k]
             match = np.float32(2) * common[m] / (length + lengths[m])

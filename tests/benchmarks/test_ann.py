@@ -1,14 +1,15 @@
-"""How often the approximate index finds the place that Max-Pi itself finds, and what it costs, as the map grows.
+"""How often the approximate index finds the places that Max-Pi itself finds, and what it costs, as the map grows.
 
 A place is put together of two frames of a route: of its landmarks each is that of one frame or the other, and keeps
 about 3 in 5 values of its signature, to which 2 in 5 of another landmark's are added; then the place is turned to one
-of four directions. The first places are the learn drive's own, and the queries frames of the test drive.
+of four directions. The first places are the learn drive's own. Queries are the frames of the test drive, whose road is
+in the map, and the same turned by a quarter, as if from roads that the learn drive never took.
 
-    pytest tests/benchmarks/test_ann.py --benchmark-only --ann-places 1000,10000,100000
+    pytest tests/benchmarks/test_ann.py --benchmark-only --ann-places 1000,10000,100000,1000000
 
-keeps, as `extra_info`, recall@1 against Max-Pi, the milliseconds of CPU time a query of both, those of learning a
-place, and how many places respond. By the rates seen, a million places need 10 GB, 12 minutes to learn, and 2 for
-Max-Pi's answers.
+keeps, as `extra_info`, recall@1 and recall@5 against Max-Pi for both kinds of queries, the milliseconds of CPU time
+a query of both, those of storing a place, the bytes in use a place, and the most memory that the process took. Max-Pi's
+places are answered and forgotten, so many at a time: its time is the sum.
 """
 
 from __future__ import annotations
@@ -16,6 +17,7 @@ from __future__ import annotations
 from itertools import cycle
 from math import pi
 from pathlib import Path
+from resource import RUSAGE_SELF, getrusage
 from time import process_time
 
 import numpy as np
@@ -34,8 +36,16 @@ from vprbench_localizers.max_pi_ann import MaxPiAnn
 from vprbench_localizers.unit_activity import View
 
 BLOCK = 1000
-QUERIES = 20
 POINTS = 25
+
+# The best places of a query that are compared.
+BEST = 5
+
+# Places that Max-Pi holds at a time: half a gigabyte.
+PART = 100_000
+
+# Of a landmark in faiss: its vector and the number of its place.
+INDEXED = 64 + 8
 
 
 def pytest_generate_tests(metafunc: pytest.Metafunc) -> None:
@@ -82,7 +92,7 @@ class Blocks:
 
 
 class Race:
-    """Max-Pi and its index over the same growing map, and the best response of either to each query."""
+    """Max-Pi and its index over the same growing map, and the best responses of Max-Pi to each query, falling."""
 
     def __init__(self, encoder: Encoder, route: Route) -> None:
         drives = [Drive(drive) for drive in route.training]
@@ -90,27 +100,54 @@ class Race:
         self.exact.fit(drives)
         self.index.fit(drives)
         described = [self.exact.describe(seen) for drive in (Drive(route.learn), *drives) for seen in drive]
-        self.learned, self.blocks = described[: len(route.learn)], Blocks(described)
-        seen = Drive(route.test, gps=False)
-        self.queries = [self.exact.describe(seen[k]) for k in range(0, len(seen), -(-len(seen) // QUERIES))]
-        self.best = np.zeros(len(self.queries), np.float32)
-        self.places, self.learn_seconds, self.exact_seconds = 0, 0.0, 0.0
-        self.grow(self.learned)
+        self.blocks = Blocks(described)
+        seen = [self.exact.describe(observation) for observation in Drive(route.test, gps=False)]
+        self.queries = seen + [turned(view) for view in seen]
+        self.best = np.zeros((len(self.queries), BEST), np.float32)
+        self.places, self.pending = 0, 0
+        self.index_seconds, self.exact_seconds, self.answer_seconds = 0.0, 0.0, 0.0
+        self.grow(described[: len(route.learn)])
 
     def grow_to(self, places: int) -> None:
         while self.places < places:
             self.grow(self.blocks.block(self.places)[: places - self.places])
+        self.answer()
 
     def grow(self, views: list[View]) -> None:
         started = process_time()
         for view in views:
             self.index.store(view)
-        learned = process_time()
-        responses = self.exact.compare(self.queries, views)
-        self.exact_seconds += process_time() - learned
-        self.learn_seconds += learned - started
-        self.best = np.maximum(self.best, responses.max(axis=1))
-        self.places += len(views)
+        half = process_time()
+        for view in views:
+            self.exact.store(view)
+        self.index_seconds += half - started
+        self.exact_seconds += process_time() - half
+        self.places, self.pending = self.places + len(views), self.pending + len(views)
+        if self.pending >= PART:
+            self.answer()
+
+    def answer(self) -> None:
+        """Let Max-Pi answer every query by the places that it holds, and forget them."""
+        for query, best in zip(self.queries, self.best, strict=True):
+            started = process_time()
+            responses = self.exact.answer(query)
+            self.answer_seconds += process_time() - started
+            best[:] = highest(np.concatenate([best, responses]))
+        self.exact.clear(self.exact.vigilance)
+        self.pending = 0
+
+
+def turned(view: View) -> View:
+    return View(view.signatures, wrap(view.azimuths.astype(np.float64) + pi / 2).astype(np.float32))
+
+
+def highest(responses: NDArray[np.float32]) -> NDArray[np.float32]:
+    return np.sort(np.partition(responses, -BEST)[-BEST:])[::-1]
+
+
+def recall(found: NDArray[np.float32], best: NDArray[np.float32], at: int) -> float:
+    """The share of each query's `at` best responses that were found; of equal ones any will do."""
+    return float(np.mean(found[:, :at] >= best[:, at - 1 : at]))
 
 
 @pytest.fixture(scope="module")
@@ -130,14 +167,28 @@ def test_recall(benchmark: BenchmarkFixture, race: Race, places: int) -> None:
     answers = [race.index.answer(query) for query in race.queries]
     seconds = process_time() - started
     assert all(answer.shape == (race.places,) for answer in answers)
-    found = [answer.max() == best for answer, best in zip(answers, race.best, strict=True)]
+    found, half = np.stack([highest(answer) for answer in answers]), len(race.queries) // 2
+    # A place reached responds as in Max-Pi, so that none can respond more strongly.
+    assert (found <= race.best).all()
     queries = cycle(race.queries)
     benchmark.extra_info |= {
         "places": race.places,
-        "recall_at_1": float(np.mean(found)),
+        "queries": half,
+        "recall_at_1": recall(found[:half], race.best[:half], 1),
+        "recall_at_5": recall(found[:half], race.best[:half], BEST),
+        "elsewhere_recall_at_1": recall(found[half:], race.best[half:], 1),
+        "elsewhere_recall_at_5": recall(found[half:], race.best[half:], BEST),
         "responding": float(np.mean([np.count_nonzero(answer) for answer in answers])),
-        "learn_ms": 1e3 * race.learn_seconds / race.places,
         "index_ms": 1e3 * seconds / len(race.queries),
-        "exact_ms": 1e3 * race.exact_seconds / len(race.queries),
+        "exact_ms": 1e3 * race.answer_seconds / len(race.queries),
+        "index_store_ms": 1e3 * race.index_seconds / race.places,
+        "exact_store_ms": 1e3 * race.exact_seconds / race.places,
+        "index_bytes_per_place": used_bytes(race.index) / race.places,
+        "peak_gigabytes": getrusage(RUSAGE_SELF).ru_maxrss / 1e6,
     }
     benchmark(lambda: race.index.answer(next(queries)))
+
+
+def used_bytes(index: MaxPiAnn) -> int:
+    units = index._views.units
+    return sum(kept.nbytes for kept in units) + INDEXED * len(units.azimuths)

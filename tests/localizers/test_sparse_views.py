@@ -21,13 +21,11 @@ def view(seed: int, points: int, size: int = 7, empty: float = 0.6) -> View:
 def test_views_come_back_bit_by_bit(points: list[int], empty: float) -> None:
     views, memory = [view(seed, count, empty=empty) for seed, count in enumerate(points)], SparseViews()
     assert [memory.add(one) for one in views] == list(range(len(views)))
-    assert (len(memory), memory.units) == (len(views), sum(points))
+    assert (len(memory), len(memory.units.azimuths)) == (len(views), sum(points))
     for place, one in enumerate(views):
         if points[place]:
             np.testing.assert_array_equal(memory[place].signatures, one.signatures)
         np.testing.assert_array_equal(memory[place].azimuths, one.azimuths)
-    owners = [place for place, count in enumerate(points) for _ in range(count)]
-    assert memory.places_of(np.arange(sum(points))).tolist() == owners
 
 
 def test_only_what_is_not_zero_is_kept() -> None:
@@ -42,3 +40,11 @@ def test_signatures_of_another_size_are_refused() -> None:
     memory.add(view(1, 0, size=5))
     with pytest.raises(PluginError, match="signatures of 8 values, the places stored have 7: clear"):
         memory.add(view(2, 2, size=8))
+
+
+def test_signatures_of_more_columns_than_16_bits_count_are_refused() -> None:
+    memory = SparseViews()
+    memory.add(View(np.eye(1, 2**16, 2**16 - 1, dtype=np.float32), np.zeros(1, np.float32)))
+    assert memory[0].signatures.argmax() == 2**16 - 1
+    with pytest.raises(PluginError, match="signatures of 65537 values: at most 65536"):
+        SparseViews().add(View(np.eye(1, 2**16 + 1, dtype=np.float32), np.zeros(1, np.float32)))
