@@ -29,7 +29,7 @@ def memory_for(encoder: Encoder) -> SegmentedMemory:
 
 def _segment(encoder: Encoder) -> Memory:
     if isinstance(encoder, OverlapEncoder) and encoder.matches_by_overlap:
-        return OverlapMemory()
+        return OverlapMemory(PLACES)
     if isinstance(encoder, SketchingEncoder) and encoder.matches_by_sketch:
         return SketchMemory(encoder)
     return PairMemory(encoder)

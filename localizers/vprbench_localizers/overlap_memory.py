@@ -15,6 +15,7 @@ from vprbench_localizers.posting_lists import (
     Postings,
     empty_postings,
     list_of,
+    packed,
     post,
     sector_of,
     with_room_for,
@@ -33,9 +34,13 @@ class OverlapMemory:
     What two values share is the smaller, if both have one sign. Values that one of both lacks add nothing, so that
     the lists of a query's own values have all that counts. Sums run in float32 from the first value to the last: the
     bits are those of an encoder that adds up all values in this order.
+
+    Args:
+        full: the number of places at which it lets go of the room that lists keep to grow; None: never.
     """
 
-    def __init__(self) -> None:
+    def __init__(self, full: int | None = None) -> None:
+        self._full = full
         self._places = self._units = self._entries = 0
         self._starts = np.zeros(1, np.int64)
         self._lengths, self._azimuths = np.empty((2, 0), np.float32)
@@ -59,6 +64,9 @@ class OverlapMemory:
         self._units, self._places = end, self._places + 1
         self._starts = with_room(self._starts, self._places + 1, self._places)
         self._starts[self._places] = end
+        if self._places == self._full:
+            self._postings = packed(self._postings)
+            self._entries = len(self._postings.units)
         return self._places - 1
 
     def respond(self, query: View, rule: Rule) -> Responses:

@@ -2,7 +2,8 @@
 
 A signature of n values is listed under each of its values that is not zero, positive and negative ones apart, in the
 sector that its azimuth lies in. A list lies in one piece, so that reading it never waits for where it goes on; one that
-is full moves to the end of all, with twice the room, and leaves its old place unused.
+is full moves to the end of all, with twice the room, and leaves its old place unused. About a fifth of the room is in
+use; once nothing is to come, lists can be packed.
 """
 
 from __future__ import annotations
@@ -16,7 +17,7 @@ from numpy.typing import NDArray
 
 from vprbench_localizers.growing import with_room
 
-__all__ = ["SECTORS", "Postings", "empty_postings", "list_of", "post", "sector_of", "with_room_for"]
+__all__ = ["SECTORS", "Postings", "empty_postings", "list_of", "packed", "post", "sector_of", "with_room_for"]
 
 # Of 10 degrees each (our choice): finer ones are read less beyond the reach, but make more lists.
 SECTORS = 36
@@ -58,6 +59,15 @@ def with_room_for(
     wanted = used + _most_added(postings, signatures, azimuths)
     units, values = with_room(postings.units, wanted, used), with_room(postings.values, wanted, used)
     return postings._replace(units=units, values=values)
+
+
+def packed(postings: Postings) -> Postings:
+    """The same lists one after another, without room between them; those that grow again move to the end."""
+    ends = np.cumsum(postings.counts).reshape(postings.counts.shape)
+    starts, entries = ends - postings.counts, int(ends[-1, -1])
+    units, values = np.empty(entries, np.uint32), np.empty(entries, np.float32)
+    _copy_lists(postings, starts, units, values)
+    return Postings(starts, postings.counts, postings.counts.copy(), units, values)
 
 
 @njit(cache=True)
@@ -120,3 +130,14 @@ def _append(postings: Postings, used: int, at: tuple[int, int], unit: int, amoun
     postings.units[start + count], postings.values[start + count] = unit, amount
     postings.counts[at] = count + 1
     return used
+
+
+@njit(cache=True)
+def _copy_lists(
+    postings: Postings, starts: NDArray[np.int64], units: NDArray[np.uint32], values: NDArray[np.float32]
+) -> None:
+    for row in range(starts.shape[0]):
+        for sector in range(starts.shape[1]):
+            count, old, new = postings.counts[row, sector], postings.starts[row, sector], starts[row, sector]
+            units[new : new + count] = postings.units[old : old + count]
+            values[new : new + count] = postings.values[old : old + count]

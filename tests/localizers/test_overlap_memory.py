@@ -65,13 +65,14 @@ def filled(memory: Memory, places: list[View]) -> Memory:
     threshold=st.floats(0.0, 0.9),
     width=st.sampled_from([0.01, 0.1, 1.0, 4.0, inf]),
     widths=st.floats(0.5, 4.0),
+    full=st.sampled_from([None, 1, 7, 20]),
 )
 def test_it_answers_bitwise_as_comparing_every_pair_does(
-    seed: int, signed: bool, threshold: float, width: float, widths: float
+    seed: int, signed: bool, threshold: float, width: float, widths: float, full: int | None
 ) -> None:
     places, queries = views(seed, 20, signed=signed), views(seed + 1, 3, signed=signed)
     rule = Rule(threshold, width, width * widths)
-    sparse, dense = filled(OverlapMemory(), places), filled(PairMemory(Overlap()), places)
+    sparse, dense = filled(OverlapMemory(full), places), filled(PairMemory(Overlap()), places)
     for query in [*queries, *places[:3]]:
         np.testing.assert_array_equal(sparse.respond(query, rule), dense.respond(query, rule))
 
@@ -87,6 +88,18 @@ def test_lists_of_many_blocks_lose_nothing() -> None:
     query = max(places, key=lambda place: np.count_nonzero(place.signatures))
     np.testing.assert_array_equal(sparse.respond(query, rule), dense.respond(query, rule))
     assert np.count_nonzero(sparse.respond(query, rule)) > 100
+
+
+def test_a_full_memory_keeps_no_room() -> None:
+    places = views(3, 40)
+    roomy, full = OverlapMemory(), OverlapMemory(40)
+    values = 0
+    for place in places:
+        # A code of nothing is listed once.
+        values += int(np.maximum(np.count_nonzero(place.signatures, axis=1), 1).sum())
+        roomy.add(place)
+        full.add(place)
+    assert len(full._postings.units) == len(full._postings.values) == values < len(roomy._postings.units) / 2
 
 
 @pytest.mark.parametrize("turn", [0.0, 0.29, -0.29, 0.31, -0.31, pi])
