@@ -69,7 +69,11 @@ def grow(
     Raises:
         PluginError: the agent makes no place of one that the city shows.
     """
-    agent.localizer.clear(VIGILANCE if agent.localizer.recruiting == "vigilance" else STEP)
+    sampling = VIGILANCE if agent.localizer.recruiting == "vigilance" else STEP
+    agent.localizer.clear(sampling)
+    # Uncounted, since it may compile.
+    _fill(agent, city, 0, 1, 1, silent)
+    agent.localizer.clear(sampling)
     empty = _held(agent)
     reached = Size(0)
     for places in sizes:

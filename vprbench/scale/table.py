@@ -52,7 +52,8 @@ RULES = {
     "encode": "the encoder's encode, called by itself; of a localizer without encoder, its describe",
     "respond": "respond with the landmarks at hand; without an encoder, query less encode",
     "bytes_per_place": "of all that the localizer holds more than without places, with what arrays keep free",
-    "add_ms": "a place, its landmarks at hand: store, where the localizer has it, else learn; mean since the last size",
+    "add_ms": "a place, its landmarks at hand: store, where the localizer has it, else learn; mean since the last "
+    "size; one goes before, uncounted",
     "learn_ms": f"learn, which asks all places first where a vigilance decides: median of the size's last {LEARNED}",
     "stopped": "what ended the curve before this size, by what the last one took",
 }
