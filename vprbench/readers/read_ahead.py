@@ -1,7 +1,7 @@
 """The next frames of a drive, read on a thread of their own while this one is worked on.
 
-Decoding takes longer than encoding does, and lets go of Python's lock; where a core is free, half of the time of going
-through a drive is saved.
+Decoding takes longer than encoding does, and lets go of Python's lock, so that a core that is free can do it; what that
+saves is in docs/performance.md.
 """
 
 from __future__ import annotations
