@@ -36,25 +36,18 @@ class ReadAhead:
 
     def get(self, index: int) -> Frame:
         """Frame `index`, which nobody else gets."""
-        follows, self._last = index == self._last + 1, index
-        self._forget(follows)
+        process, follows = os.getpid(), index == self._last + 1
+        if process != self._process or not follows:
+            # What was read for nothing is left to itself: another thread may be waiting for it. So is what was begun
+            # before a fork, which threads do not survive.
+            self._coming = {}
+        self._last, self._process = index, process
         coming = self._coming.pop(index, None)
         if follows:
             for following in range(index + 1, min(index + 1 + AHEAD, self._count)):
                 if following not in self._coming:
-                    self._coming[following] = _reader(self._process).submit(self._read, following)
+                    self._coming[following] = _reader(process).submit(self._read, following)
         return self._read(index) if coming is None else coming.result()
-
-    def _forget(self, follows: bool) -> None:
-        """Drop what was read for nothing, and what was begun in a process of which this is a fork."""
-        process = os.getpid()
-        if process != self._process:
-            # Threads do not survive a fork, and their locks may be closed for ever.
-            self._process, self._coming = process, {}
-        elif not follows:
-            for coming in self._coming.values():
-                coming.cancel()
-            self._coming.clear()
 
     def __reduce__(self) -> tuple[type[ReadAhead], tuple[Callable[[int], Frame], int]]:
         """Copies begin anew: what is being read cannot be copied."""

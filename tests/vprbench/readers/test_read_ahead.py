@@ -5,7 +5,7 @@ from __future__ import annotations
 import copy
 import os
 import pickle
-from concurrent.futures import Future
+from concurrent.futures import Future, ThreadPoolExecutor
 from pathlib import Path
 from threading import Event
 
@@ -82,6 +82,16 @@ def test_a_broken_frame_fails_when_it_is_asked_for_and_each_time() -> None:
         with pytest.raises(DataError, match="frame 2 is broken"):
             ahead.get(2)
     assert shown(ahead.get(3)) == 3
+
+
+def test_threads_that_share_a_drive_get_the_frames_they_ask_for() -> None:
+    ahead = ReadAhead(Source(), FRAMES)
+    orders = [np.random.default_rng(seed).integers(0, FRAMES, 200).tolist() for seed in range(4)]
+    with ThreadPoolExecutor(len(orders)) as pool:
+        for order, found in zip(
+            orders, pool.map(lambda order: [shown(ahead.get(i)) for i in order], orders), strict=True
+        ):
+            assert found == order
 
 
 def test_after_a_fork_nothing_is_expected_of_the_threads_left_behind(monkeypatch: pytest.MonkeyPatch) -> None:
