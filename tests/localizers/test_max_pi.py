@@ -12,14 +12,12 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from jaxtyping import Float32, Int64
 
-from vprbench.agents import build
 from vprbench.errors import ConfigError, PluginError
-from vprbench.protocols import DescriptorLocalizer
 from vprbench.recruiting import recruit_by_vigilance
 from vprbench.types import Frame, Landmarks, Observation
 from vprbench_encoders.log_polar import LogPolar
 from vprbench_localizers.azimuth import azimuths
-from vprbench_localizers.matching import PairEncoder, SketchingEncoder
+from vprbench_localizers.matching import PairEncoder
 from vprbench_localizers.max_pi import MaxPi
 from vprbench_localizers.pair_memory import TOGETHER
 from vprbench_localizers.unit_activity import View
@@ -288,29 +286,6 @@ def test_signatures_of_two_sizes_are_refused() -> None:
         agent.compare(views, views)
 
 
-@pytest.mark.parametrize(
-    ("options", "named"),
-    [
-        ({"vigilance": 1.5}, "vigilance"),
-        ({"vigilance": float("nan")}, "vigilance"),
-        ({"azimuth_width_deg": 0.0}, "azimuth_width_deg"),
-        ({"azimuth_reach": -1.0}, "azimuth_reach"),
-        ({"recognition_threshold": 1.0}, "recognition_threshold"),
-        ({"recognition_percentile": 101.0}, "percentile"),
-        ({"different_places": -1.0}, "apart"),
-        ({"calibration_frames": 1}, "frames"),
-    ],
-)
-def test_impossible_options_are_refused_by_name(options: dict[str, float], named: str) -> None:
-    with pytest.raises(ConfigError, match=named):
-        MaxPi(TableEncoder([]), **options)  # type: ignore[arg-type]
-
-
-def test_what_is_no_encoder_is_refused() -> None:
-    with pytest.raises(ConfigError, match="encoder must have fit, encode and match"):
-        MaxPi("log-polar")  # type: ignore[arg-type]
-
-
 def test_without_a_threshold_it_asks_for_one() -> None:
     agent = MaxPi(TableEncoder(levels(0.0)))
     for use in agent.learn, agent.respond:
@@ -318,10 +293,6 @@ def test_without_a_threshold_it_asks_for_one() -> None:
             use(observe(0))
 
 
-def test_configurations_build_it_and_it_keeps_its_protocols() -> None:
-    agent = build({"localizer": "max-pi", "encoder": {"name": "log-polar-12", "points": 15}, "vigilance": 0.3})
-    assert isinstance(agent, MaxPi)
-    assert isinstance(agent, DescriptorLocalizer)
-    assert isinstance(agent.encoder, SketchingEncoder)
+def test_the_encoders_here_do_and_do_not_compare_pairs() -> None:
+    assert isinstance(PairTableEncoder([]), PairEncoder)
     assert not isinstance(TableEncoder([]), PairEncoder)
-    assert agent.vigilance == 0.3

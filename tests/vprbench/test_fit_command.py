@@ -18,9 +18,6 @@ from vprbench.agents import build_encoder
 from vprbench.catalogue import load_route
 from vprbench.checks.samples import textured_frame
 from vprbench.cli import main
-from vprbench.cli.fit_figures import families
-from vprbench.cli.fit_summary import fits_to_terminal
-from vprbench.fit_table import Fit
 from vprbench.types import Frame, LearningStep
 
 THIRD_PARTY = Path(__file__).parents[1] / "third_party"
@@ -195,20 +192,6 @@ def test_figures_are_drawn_of_the_first_seed_and_of_all(fit: Run) -> None:
     drawn = {path.name for path in Path("out/figures").iterdir()}
     stems = ("typical-s0-weights", "measure-weight", "measure-seconds")
     assert drawn == {f"{stem}.{kind}" for stem in stems for kind in ("png", "svg")}
-
-
-def test_measures_of_one_family_share_an_axis() -> None:
-    assert families(["s1_rate", "s1_rate_held_out", "s2_rate", "s1_map_rate", "size", "fit_seconds", "s1_seconds"]) == {
-        "rate": ["s1_rate", "s1_rate_held_out", "s2_rate"],
-        "map_rate": ["s1_map_rate"],
-        "size": ["size"],
-        "seconds": ["fit_seconds", "s1_seconds"],
-    }
-
-
-def test_a_single_fit_has_no_spread() -> None:
-    table = fits_to_terminal([Fit({"encoder": "a", "seed": "0"}, {"rate": 0.123456}, {})])
-    assert [str(cell) for cell in table.columns[1].cells] == ["0.1235"]
 
 
 def test_an_encoder_that_fails_takes_no_other_down(fit: Run, monkeypatch: pytest.MonkeyPatch) -> None:
