@@ -1,8 +1,9 @@
-"""The worker processes of a sweep, and which of them does which job: one that knows the route, if none stays idle."""
+"""The worker processes of a sweep, and which of them does which job: one that knows the route, where there is one."""
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping, Sequence, Set
+from collections import defaultdict
+from collections.abc import Callable, Mapping, Sequence
 from concurrent.futures import FIRST_COMPLETED, Future, wait
 from dataclasses import dataclass
 from multiprocessing.context import SpawnContext
@@ -13,7 +14,7 @@ from pebble import ProcessPool
 
 from vprbench.sweep import Job
 
-__all__ = ["Crew", "Work", "next_job"]
+__all__ = ["Crew", "Effort", "Work", "next_job"]
 
 # How long processes may take to start, seconds, before nobody waits for them any more.
 ASSEMBLY = 30.0
@@ -21,10 +22,31 @@ ASSEMBLY = 30.0
 # Runs a job, given with its number, in a process; what it finds out it tells by other ways.
 Work = Callable[[Job, int], None]
 
+# How much there is to do in a job, in any unit.
+Effort = Callable[[Job], float]
 
-def next_job(waiting: Mapping[int, Job], route: str, others: Set[str]) -> int:
-    """The number of the job to do next: the first of the worker's own route, else of one that no other is on."""
-    return min(waiting, key=lambda number: (waiting[number].route != route, waiting[number].route in others))
+
+def next_job(waiting: Mapping[int, Job], route: str, others: Sequence[str], effort: Effort) -> int:
+    """The number of the job that a worker does next.
+
+    The first of its own route, whose frames it has; else of the route on which most would be left to each worker, were
+    it to join. Equally many routes and workers so get one each, but several begin on a route that outweighs the rest.
+
+    Args:
+        waiting: jobs by their number, at least one.
+        route: that the worker is on.
+        others: the routes that the other workers are on, one each.
+        effort: of a job.
+    """
+    left = defaultdict[str, float](float)
+    for job in waiting.values():
+        left[job.route] += effort(job)
+
+    def appeal(number: int) -> tuple[bool, float]:
+        there = waiting[number].route
+        return there == route, left[there] / (1 + others.count(there))
+
+    return max(waiting, key=appeal)
 
 
 @dataclass
@@ -41,15 +63,22 @@ class Crew:
     Args:
         todo: the jobs, those that should begin first first.
         work: does one of them.
+        effort: of each.
         workers: processes, though never more than there are jobs.
         timeout: seconds that a job may take, None for any.
         context: of the processes.
     """
 
     def __init__(
-        self, todo: Sequence[Job], work: Work, workers: int, timeout: float | None, context: SpawnContext
+        self,
+        todo: Sequence[Job],
+        work: Work,
+        effort: Effort,
+        workers: int,
+        timeout: float | None,
+        context: SpawnContext,
     ) -> None:
-        self._work, self._timeout = work, timeout
+        self._work, self._effort, self._timeout = work, effort, timeout
         self._workers = [_Worker(ProcessPool(1, context=context)) for _ in range(min(workers, len(todo)))]
         self._waiting = dict(enumerate(todo))
         self._at_work: dict[Future[None], tuple[_Worker, Job]] = {}
@@ -94,7 +123,8 @@ class Crew:
         """Give a worker its next job, if there is one."""
         if not self._waiting:
             return
-        number = next_job(self._waiting, worker.route, {other.route for other in self._workers if other is not worker})
+        others = [other.route for other in self._workers if other is not worker]
+        number = next_job(self._waiting, worker.route, others, self._effort)
         job = self._waiting.pop(number)
         worker.route = job.route
         self._at_work[worker.pool.schedule(self._work, args=[job, number], timeout=self._timeout)] = worker, job

@@ -13,7 +13,7 @@ from time import monotonic
 
 from pebble import ProcessExpired
 
-from vprbench.crew import Crew
+from vprbench.crew import Crew, Effort
 from vprbench.encoder_store import EncoderStore
 from vprbench.frame_memory import FrameMemory
 from vprbench.message_queue import drain, message_queue, tell
@@ -58,15 +58,15 @@ class Progress:
     note: str = ""
 
 
-def run_all(todo: Sequence[Job], settings: Settings) -> Iterator[Progress | Outcome]:
-    """Run jobs; yields their progress, and each outcome as soon as it is known."""
+def run_all(todo: Sequence[Job], effort: Effort, settings: Settings) -> Iterator[Progress | Outcome]:
+    """Run jobs, which take so much effort; yields their progress, and each outcome as soon as it is known."""
     message: Progress | Outcome
     context = multiprocessing.get_context("spawn")
     with message_queue(context) as messages:
         work = partial(_work, settings=settings, messages=messages)
         unanswered = {cell: job for job in todo for cell in job.cells}
         lost = False
-        with Crew(todo, work, settings.workers, settings.timeout, context) as crew:
+        with Crew(todo, work, effort, settings.workers, settings.timeout, context) as crew:
             crew.begin()
             while crew.is_busy:
                 ended = crew.ended(within=REPORT_EVERY)

@@ -15,7 +15,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 from pebble import ProcessExpired
 
-from vprbench.crew import Crew, Work, next_job
+from vprbench.crew import Crew, Effort, Work, next_job
 from vprbench.sweep import Job
 
 # Jobs that do as their route says; processes that are started anew can import it.
@@ -36,13 +36,19 @@ def jobs(routes: Iterable[str]) -> dict[int, Job]:
     return {number: Job(route, "agent", number, "cohog", ()) for number, route in enumerate(routes)}
 
 
-def shared_out(routes: str, workers: int) -> list[str]:
-    """The routes that each worker plays, one after the other, where all jobs take equally long."""
-    waiting, played = jobs(routes), [""] * workers
+def alike(job: Job) -> float:
+    return 1
+
+
+def shared_out(routes: str, workers: int, effort: Effort = alike) -> list[str]:
+    """The routes that each worker plays, one after the other, where a job takes as long as is expected of it."""
+    waiting, played, busy = jobs(routes), [""] * workers, [0.0] * workers
     while waiting:
-        for worker in range(min(workers, len(waiting))):
-            others = {played[other][-1:] for other in range(workers) if other != worker}
-            played[worker] += waiting.pop(next_job(waiting, played[worker][-1:], others)).route
+        worker = busy.index(min(busy))
+        others = [played[other][-1:] for other in range(workers) if other != worker]
+        job = waiting.pop(next_job(waiting, played[worker][-1:], others, effort))
+        played[worker] += job.route
+        busy[worker] += effort(job)
     return played
 
 
@@ -59,7 +65,16 @@ def test_no_worker_waits_for_a_route_that_another_is_on() -> None:
 
 
 def test_of_its_route_a_worker_does_the_first_job() -> None:
-    assert next_job(jobs("abab"), "b", {"a"}) == 1
+    assert next_job(jobs("abab"), "b", ["a"], alike) == 1
+
+
+def test_both_workers_begin_on_a_route_that_outweighs_the_rest() -> None:
+    assert shared_out("aaabbbccc", 2, lambda job: {"a": 9, "b": 3, "c": 1}[job.route]) == ["aacc", "abbbc"]
+
+
+def test_a_route_that_more_than_one_is_on_waits_for_one_with_less_to_do() -> None:
+    assert next_job(jobs("aab"), "c", ["a", "a"], alike) == 2
+    assert next_job(jobs("aab"), "c", ["a"], alike) == 0
 
 
 @given(routes=st.text("abcd", min_size=1, max_size=20), workers=st.integers(1, 5))
@@ -82,7 +97,8 @@ def hire(work: Work) -> Callable[..., Crew]:
 
     def hired(*routes: str, workers: int, timeout: float | None = None) -> Crew:
         todo = list(jobs(routes).values())
-        return Crew(todo, work, workers, timeout, multiprocessing.get_context("spawn"))
+        # In the order given, whatever the routes.
+        return Crew(todo, work, lambda job: 10.0**-job.seed, workers, timeout, multiprocessing.get_context("spawn"))
 
     return hired
 

@@ -12,6 +12,7 @@ from rich.markup import escape
 
 from vprbench.catalogue import catalogue, load_route
 from vprbench.cli.progress import SweepProgress
+from vprbench.crew import Effort
 from vprbench.data_root import data_root
 from vprbench.encoder_store import EncoderStore
 from vprbench.errors import DataError
@@ -52,7 +53,8 @@ def sweep_command(request: Request) -> int:
     settings = _settings(request, sweep, question)
     absent = _left_out(sweep, settings, console) if request.present else frozenset[str]()
     steps = _plan(request, sweep, table, settings, absent)
-    todo = _longest_first(jobs(sweep, steps.todo), settings)
+    effort = _effort(settings)
+    todo = sorted(jobs(sweep, steps.todo), key=effort, reverse=True)
     console.print(_announce(question.stem, steps, table, sweep, settings), highlight=False)
     if request.dry_run:
         from vprbench.cli.estimating import print_estimate
@@ -61,7 +63,7 @@ def sweep_command(request: Request) -> int:
         return 0
     try:
         with table.writing(question, list(sweep.cells()), sweep.routes_file):
-            failed = _measure(todo, settings, table, console)
+            failed = _measure(todo, effort, settings, table, console)
     except KeyboardInterrupt:
         console.print("interrupted: what was finished is kept, and the same command goes on from there")
         return 130
@@ -104,18 +106,18 @@ def _plan(request: Request, sweep: Sweep, table: ResultTable, settings: Settings
     return plan(sweep, cells, table, checksum, request.overwrite)
 
 
-def _longest_first(todo: Sequence[Job], settings: Settings) -> list[Job]:
-    """Jobs by the frames of their route, most first: the longest must not be the last to start."""
+def _effort(settings: Settings) -> Effort:
+    """How much a job takes by the length of its route: the pairs of frames that its response matrix may hold."""
 
     @cache
-    def frames(name: str) -> int:
+    def pairs(name: str) -> int:
         try:
             route = load_route(name, settings.data, settings.routes_file)
         except DataError:
             return 0
-        return len(route.learn) + len(route.test)
+        return len(route.learn) * (len(route.learn) + len(route.test))
 
-    return sorted(todo, key=lambda job: frames(job.route), reverse=True)
+    return lambda job: pairs(job.route)
 
 
 def _announce(name: str, steps: Plan, table: ResultTable, sweep: Sweep, settings: Settings) -> str:
@@ -134,13 +136,13 @@ def _announce(name: str, steps: Plan, table: ResultTable, sweep: Sweep, settings
     return f"[bold]{escape(name)}[/bold]: " + ", ".join(part for part, n in zip(parts, counts, strict=True) if n)
 
 
-def _measure(todo: Sequence[Job], settings: Settings, table: ResultTable, console: Console) -> int:
+def _measure(todo: Sequence[Job], effort: Effort, settings: Settings, table: ResultTable, console: Console) -> int:
     """Run the jobs, storing each cell as it comes; how many failed."""
     failed = 0
     if not todo:
         return failed
     with SweepProgress(todo, console) as progress:
-        for message in run_all(todo, settings):
+        for message in run_all(todo, effort, settings):
             if isinstance(message, Progress):
                 progress.step(message)
             else:
