@@ -93,8 +93,8 @@ def _check_output(option: str, path: Path | None, suffix: str) -> None:
 
 
 def _sampling(localizer: Localizer, route: Route, distance: float) -> float:
-    """The vigilance or step for a sampling distance, the fast way where the localizer allows it."""
-    if isinstance(localizer, DescriptorLocalizer):
+    """The vigilance or step for a sampling distance, the fast way where there is one to find."""
+    if localizer.recruiting == "vigilance" and isinstance(localizer, DescriptorLocalizer):
         return ResponseMatrix(route, localizer).sampling(distance)
     return calibrate(localizer, route, distance)
 
