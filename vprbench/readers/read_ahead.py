@@ -20,7 +20,7 @@ AHEAD = 4
 
 
 class ReadAhead:
-    """Frames that are likely to be asked for next: those that follow, as long as each follows the one before.
+    """Frames that are likely to be asked for next: those that follow, once one has followed the one before.
 
     A frame that cannot be read fails when it is asked for, not before.
 
@@ -31,7 +31,8 @@ class ReadAhead:
 
     def __init__(self, read: Callable[[int], Frame], count: int) -> None:
         self._read, self._count = read, count
-        self._last, self._process = -1, 0
+        # The frame asked for last; the first of a drive follows none.
+        self._last, self._process = -2, 0
         self._coming: dict[int, Future[Frame]] = {}
 
     def get(self, index: int) -> Frame:

@@ -59,29 +59,32 @@ def test_a_drive_is_read_ahead_once_and_not_beyond_its_end() -> None:
     source = Source()
     ahead = ReadAhead(source, FRAMES)
     ahead.get(0)
-    source.wait_for(AHEAD)
-    assert sorted(source.read) == list(range(AHEAD + 1))
-    assert [shown(ahead.get(index)) for index in range(1, FRAMES)] == list(range(1, FRAMES))
+    assert source.read == [0]
+    ahead.get(1)
+    source.wait_for(1 + AHEAD)
+    assert sorted(source.read) == list(range(2 + AHEAD))
+    assert [shown(ahead.get(index)) for index in range(2, FRAMES)] == list(range(2, FRAMES))
     assert sorted(source.read) == list(range(FRAMES))
 
 
 def test_frames_out_of_order_are_read_when_asked_for_alone() -> None:
     source = Source()
     ahead = ReadAhead(source, FRAMES)
-    assert [shown(ahead.get(index)) for index in (5, 3, 9, 1)] == [5, 3, 9, 1]
-    assert source.read == [5, 3, 9, 1]
+    assert [shown(ahead.get(index)) for index in (0, 5, 3, 9, 1)] == [0, 5, 3, 9, 1]
+    assert source.read == [0, 5, 3, 9, 1]
 
 
 def test_a_broken_frame_fails_when_it_is_asked_for_and_each_time() -> None:
-    source = Source(2)
+    source = Source(3)
     ahead = ReadAhead(source, FRAMES)
     ahead.get(0)
-    source.wait_for(2)
     ahead.get(1)
+    source.wait_for(3)
+    ahead.get(2)
     for _ in range(2):
-        with pytest.raises(DataError, match="frame 2 is broken"):
-            ahead.get(2)
-    assert shown(ahead.get(3)) == 3
+        with pytest.raises(DataError, match="frame 3 is broken"):
+            ahead.get(3)
+    assert shown(ahead.get(4)) == 4
 
 
 def test_threads_that_share_a_drive_get_the_frames_they_ask_for() -> None:
@@ -97,10 +100,11 @@ def test_threads_that_share_a_drive_get_the_frames_they_ask_for() -> None:
 def test_after_a_fork_nothing_is_expected_of_the_threads_left_behind(monkeypatch: pytest.MonkeyPatch) -> None:
     ahead = ReadAhead(Source(), FRAMES)
     ahead.get(0)
+    ahead.get(1)
     # What a thread was at that is gone: nobody will ever finish it.
-    ahead._coming = {1: Future()}
+    ahead._coming = {2: Future()}
     monkeypatch.setattr(os, "getpid", lambda: -1)
-    assert shown(ahead.get(1)) == 1
+    assert shown(ahead.get(2)) == 2
 
 
 def test_files_in_the_midst_of_being_read_can_be_copied(tmp_path: Path) -> None:
@@ -108,8 +112,8 @@ def test_files_in_the_midst_of_being_read_can_be_copied(tmp_path: Path) -> None:
     for number, path in enumerate(paths):
         cv2.imwrite(str(path), np.full((188, 642), number, np.uint8))
     files = ImageFiles(paths, (642, 188))
-    assert shown(files[0]) == 0
+    assert [shown(files[number]) for number in (0, 1)] == [0, 1]
     for other in (copy.deepcopy(files), pickle.loads(pickle.dumps(files)), files):
         assert other == files
-        assert [shown(other[number]) for number in range(1, FRAMES)] == list(range(1, FRAMES))
+        assert [shown(other[number]) for number in range(2, FRAMES)] == list(range(2, FRAMES))
     assert shown(files[-1]) == FRAMES - 1
