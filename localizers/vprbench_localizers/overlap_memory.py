@@ -6,7 +6,6 @@ import numpy as np
 from numba import njit
 from numpy.typing import NDArray
 
-from vprbench.errors import PluginError
 from vprbench.types import Responses
 from vprbench_localizers.azimuth import turn
 from vprbench_localizers.growing import with_room
@@ -20,6 +19,7 @@ from vprbench_localizers.posting_lists import (
     sector_of,
     with_room_for,
 )
+from vprbench_localizers.signature_size import require_size
 from vprbench_localizers.unit_activity import Rule, View, mean_by_place, product
 
 __all__ = ["OverlapMemory", "code_length"]
@@ -86,12 +86,7 @@ class OverlapMemory:
         self._postings = with_room_for(self._postings, self._entries, view.signatures, view.azimuths)
 
     def _must_have_size(self, view: View) -> None:
-        size, stored = view.signatures.shape[1], len(self._postings.starts) // 2
-        if size != stored:
-            raise PluginError(
-                f"the encoder gives signatures of {size} values, the places stored have {stored}:"
-                " clear them after fitting an encoder again"
-            )
+        require_size(view.signatures.shape[1], len(self._postings.starts) // 2)
 
 
 @njit(cache=True)

@@ -40,9 +40,14 @@ class PairMemory:
         return self._memory.add(view)
 
     def respond(self, query: View, rule: Rule) -> Responses:
-        """Response 0..1 of every place."""
+        """Response 0..1 of every place.
+
+        Raises:
+            PluginError: the query's signatures are of another size than those stored.
+        """
         if not (self._memory.units and len(query.azimuths)):
             return np.zeros(len(self), np.float32)
+        self._memory.require(query)
         matcher = pair_matcher(self._encoder)
         responses = np.empty(len(self), np.float32)
         for first, units in zip(range(0, len(self), TOGETHER), self._memory.blocks(TOGETHER), strict=True):

@@ -49,9 +49,14 @@ class SketchMemory:
         return index
 
     def respond(self, query: View, rule: Rule) -> Responses:
-        """Response 0..1 of every place."""
+        """Response 0..1 of every place.
+
+        Raises:
+            PluginError: the query's signatures are of another size than those stored.
+        """
         if not (self._memory.units and len(query.azimuths)):
             return np.zeros(len(self), np.float32)
+        self._memory.require(query)
         sketched, responses = self._sketched(query), np.empty(len(self), np.float32)
         blocks = zip(self._memory.blocks(TOGETHER), self._sketches.blocks(TOGETHER), strict=True)
         for first, (units, sketches) in zip(range(0, len(self), TOGETHER), blocks, strict=True):

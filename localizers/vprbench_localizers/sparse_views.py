@@ -11,6 +11,7 @@ from numpy.typing import NDArray
 
 from vprbench.errors import PluginError
 from vprbench_localizers.growing import Growing
+from vprbench_localizers.signature_size import require_size
 from vprbench_localizers.unit_activity import View
 
 __all__ = ["SparseUnits", "SparseViews"]
@@ -84,11 +85,8 @@ class SparseViews:
 
     def require(self, size: int) -> None:
         """Set the size of all signatures, or refuse another."""
-        if len(self._azimuths) and size != self._size:
-            raise PluginError(
-                f"the encoder gives signatures of {size} values, the places stored have {self._size}:"
-                " clear them after fitting an encoder again"
-            )
+        if len(self._azimuths):
+            require_size(size, self._size)
         if size > LARGEST:
             raise PluginError(f"the encoder gives signatures of {size} values: at most {LARGEST} can be kept sparsely")
         self._size = size

@@ -1,4 +1,4 @@
-"""The activity of a unit, and the response of a place: what both kinds of memory compute alike."""
+"""The activity of a unit, and the response of a place: what all kinds of memory compute alike."""
 
 from __future__ import annotations
 

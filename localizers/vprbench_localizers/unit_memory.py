@@ -9,8 +9,8 @@ import numpy as np
 from jaxtyping import Float32, Int64, UInt8
 from numpy.typing import NDArray
 
-from vprbench.errors import PluginError
-from vprbench_localizers.growing import with_room
+from vprbench_localizers.growing import Growing, with_room
+from vprbench_localizers.signature_size import require_size
 from vprbench_localizers.unit_activity import View
 
 __all__ = ["UnitMemory", "Units"]
@@ -39,14 +39,15 @@ class UnitMemory:
 
     def __init__(self) -> None:
         self.units = 0
-        self._starts = [0]
+        self._starts = Growing(np.int64)
+        self._starts.extend(np.zeros(1, np.int64))
         self._signatures: NDArray[Any] = np.empty((0, 0), np.float32)
         self._azimuths = np.empty(0, np.float32)
 
     @property
     def starts(self) -> Int64[np.ndarray, " places_and_end"]:
-        """The first unit of each place, and the end of the last."""
-        return np.array(self._starts, np.int64)
+        """The first unit of each place, and the end of the last; a view that the next `add` may leave behind."""
+        return self._starts.rows
 
     @property
     def signatures(self) -> Float32[np.ndarray, "units size"] | UInt8[np.ndarray, "units size"]:
@@ -81,17 +82,21 @@ class UnitMemory:
             self._signatures[self.units : end] = view.signatures
             self._azimuths[self.units : end] = view.azimuths
         self.units = end
-        self._starts.append(end)
+        self._starts.extend(np.array([end]))
         return len(self) - 1
 
+    def require(self, view: View) -> None:
+        """Refuse a view whose signatures are of another size than those stored; there must be some.
+
+        Raises:
+            PluginError: they are.
+        """
+        require_size(view.signatures.shape[1], self._signatures.shape[1])
+
     def _reserve(self, units: int, view: View) -> None:
-        size = view.signatures.shape[1]
-        if not self.units:
-            self._signatures = np.empty((0, size), view.signatures.dtype)
-        elif size != self._signatures.shape[1]:
-            raise PluginError(
-                f"the encoder gives signatures of {size} values, the places stored have {self._signatures.shape[1]}:"
-                " clear them after fitting an encoder again"
-            )
+        if self.units:
+            self.require(view)
+        else:
+            self._signatures = np.empty((0, view.signatures.shape[1]), view.signatures.dtype)
         self._signatures = with_room(self._signatures, units, self.units)
         self._azimuths = with_room(self._azimuths, units, self.units)

@@ -95,7 +95,9 @@ def test_it_is_the_memory_of_encoders_that_say_so() -> None:
 
 
 def test_signatures_of_two_sizes_are_refused() -> None:
-    memory = SketchMemory(Sketching(2))
-    memory.add(View(np.ones((1, 3), np.float32), np.zeros(1, np.float32)))
-    with pytest.raises(PluginError, match="signatures of 4 values, the places stored have 3"):
-        memory.add(View(np.ones((1, 4), np.float32), np.zeros(1, np.float32)))
+    wide = View(np.ones((1, 4), np.float32), np.zeros(1, np.float32))
+    for memory in SketchMemory(Sketching(2)), PairMemory(Sketching(2)):
+        memory.add(View(np.ones((1, 3), np.float32), np.zeros(1, np.float32)))
+        for use in memory.add, lambda view, memory=memory: memory.respond(view, Rule(0.0, 1.0, 1.0)):
+            with pytest.raises(PluginError, match="signatures of 4 values, the places stored have 3"):
+                use(wide)
