@@ -101,6 +101,10 @@ class LandmarkIndex:
         most = min(most, int(np.count_nonzero(votes)))
         return np.sort(np.argpartition(-votes, most - 1)[:most]) if most else np.empty(0, np.int64)
 
+    def __sizeof__(self) -> int:
+        """Bytes of the object and of the vectors and numbers that faiss keeps for it, out of Python's sight."""
+        return super().__sizeof__() + self._lists.ntotal * (self._lists.code_size + np.dtype(np.int64).itemsize)
+
     def _vectors(self, view: View) -> Float32[np.ndarray, "points 64"]:
         return landmark_vectors(view, self._fold, self._weight)
 

@@ -1,6 +1,7 @@
 from __future__ import annotations
 
 from math import inf, pi
+from sys import getsizeof
 
 import faiss
 import numpy as np
@@ -106,3 +107,14 @@ def test_without_faiss_one_is_told_what_to_install(monkeypatch: pytest.MonkeyPat
     monkeypatch.setattr(landmark_index, "find_spec", lambda name: None)
     with pytest.raises(ConfigError, match=r"pip install 'vprbench\[ann\]'$"):
         require_faiss()
+
+
+def test_its_size_tells_what_faiss_keeps() -> None:
+    index = filled([])
+    empty = getsizeof(index)
+    for place, view in enumerate(views(1, 100)):
+        index.add(view, place)
+    # 62 values of a look, two of an azimuth, and a place of 8 bytes.
+    assert getsizeof(index) - empty == 100 * (64 + 8)
+    index.clear()
+    assert getsizeof(index) == empty
