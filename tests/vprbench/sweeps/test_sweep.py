@@ -65,6 +65,17 @@ def test_rogues_fail_alone(here: Path, vprbench: Run, ask: Ask) -> None:
     assert "acme-vpr" in error["broken"]
 
 
+def test_a_dry_run_tells_which_jobs_will_fail(here: Path, vprbench: Run, ask: Ask) -> None:
+    ask({"raises": 'localizer = "raises"', "broken": 'localizer = "nearest-view", encoder = "broken-patch"', "b": GOOD})
+    done = vprbench("sweep", "tiny.toml", "--dry-run")
+    assert done.returncode == 0
+    assert "Traceback" not in done.stderr
+    assert "Tiny/raises/s0: ValueError: no such luck" in done.stdout
+    assert "Tiny/broken/s0: " in done.stdout
+    assert "acme-vpr" in done.stdout
+    assert "; 2 of 3 jobs will fail, for the reasons above" in done.stdout
+
+
 def test_a_mended_failure_leaves_no_mark(here: Path, vprbench: Run, ask: Ask) -> None:
     """Names that look like nothing or like numbers are names, and a failed row changes no other."""
     csv = here / "runs" / "tiny.csv"
