@@ -90,15 +90,16 @@ def test_the_work_of_a_step_localizer_is_known_beforehand(fake: Fake) -> None:
 
 
 @pytest.mark.parametrize("fake", ["vigilance"], indirect=True)
-def test_the_halvings_of_a_vigilance_are_counted(fake: Fake) -> None:
+def test_the_vigilances_tried_are_counted(fake: Fake) -> None:
     said = Estimator(Settings()).estimate(JOB)
-    # Of 41 learn and 30 test frames: 25 times learned, then recorded and tested, for two cells; 10 trained.
-    assert said.frames == 2 * (25 * 41 + 41 + 30) + 10
+    # Of 41 learn and 30 test frames: 9 times learned, then recorded and tested, for two cells; 10 trained.
+    assert said.frames == 2 * (9 * 41 + 41 + 30) + 10
     assert said.pairs == 0
     fake.fitted, fake.played, fake.now = 0, 0, 0.0
     list(run(JOB))
-    assert 0.1 * said.frames < fake.played < said.frames
-    assert 0.1 * said.seconds < fake.now
+    # As `--dry-run` promises, within a factor of 2.
+    assert 0.5 < said.frames / fake.played < 2
+    assert 0.5 < said.seconds / fake.now < 2
 
 
 @dataclass
