@@ -148,6 +148,7 @@ def test_the_papers_agents_are_there_by_their_names() -> None:
         (["localizer = 'max-pi', encoder = 'hsd-14'"], "no encoder is called 'hsd-14'"),
         (["localizer = "], "agent 'localizer = ': not the inside of a TOML table"),
         (["lpmp", "--places", "1,few"], "--places '1,few': give whole numbers from 1 on with commas between"),
+        (["lpmp", "--places", ""], "--places '': give whole numbers from 1 on"),
         (["lpmp", "--places", "0,1"], "--places '0,1': give whole numbers from 1 on"),
     ],
 )

@@ -89,7 +89,11 @@ def test_sizes_become_rows_until_a_limit_stops_the_agent(scale: Run) -> None:
 
 @pytest.mark.parametrize(
     ("words", "said"),
-    [(["hsd-14"], "no agent 'hsd-14'"), (["lpmp", "--places", "0"], "--places '0': give whole numbers from 1 on")],
+    [
+        (["hsd-14"], "no agent 'hsd-14'"),
+        (["lpmp", "--places", "0"], "--places '0': give whole numbers from 1 on"),
+        (["lpmp", "--places", ""], "--places '': give whole numbers from 1 on"),
+    ],
 )
 def test_a_fault_of_the_question_is_one_line(scale: Run, words: list[str], said: str) -> None:
     done = scale(*words)
@@ -107,4 +111,5 @@ def test_finished_sizes_survive_an_interruption(scale: Run, monkeypatch: pytest.
     monkeypatch.setattr("vprbench.cli.scaling.grow", interrupted)
     done = scale(SMALL, "--places", "4,8")
     assert done.code == 130
+    assert "interrupted: 1 finished sizes are kept" in done.err
     assert [row["places"] for row in rows()] == ["4"]

@@ -58,7 +58,7 @@ class Scaling:
 def scale_command(request: Scaling) -> int:
     """Grow and time one agent after the other, and write the table anew at each size; exit code 130 if interrupted."""
     agents = dict(asked_agents(request.agents or AGENTS, default_question()))
-    sizes = asked_places(request.places) if request.places else PLACES
+    sizes = PLACES if request.places is None else asked_places(request.places)
     if request.figures and find_spec("matplotlib") is None:
         raise ConfigError("--figures needs matplotlib: pip install 'vprbench[figures]'")
     route = load_route(request.route, request.data, request.routes)
@@ -72,6 +72,8 @@ def scale_command(request: Scaling) -> int:
                     grown[name].append(size)
                     write_scale(scale_table(route.name, grown), stamp, request.out)
     except KeyboardInterrupt:
+        finished = sum(map(len, grown.values()))
+        Console(stderr=True).print(f"interrupted: {finished} finished sizes are kept", highlight=False)
         code = 130
     if any(grown.values()):
         _conclude(scale_table(route.name, grown), request)

@@ -53,7 +53,7 @@ def frequency_command(request: Timing) -> int:
     """Time the agents, and write the table anew after each round; exit code 130 if it was interrupted."""
     question, console = default_question(), Console(stderr=True)
     agents = dict(asked_agents(request.agents, question))
-    sizes = asked_places(request.places) if request.places else list(question.places)
+    sizes = list(question.places) if request.places is None else asked_places(request.places)
     rounds = request.rounds or question.rounds
     if request.figures and find_spec("matplotlib") is None:
         raise ConfigError("--figures needs matplotlib: pip install 'vprbench[figures]'")
