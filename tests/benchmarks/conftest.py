@@ -21,6 +21,9 @@ from vprbench.types import Frame, Observation
 
 FRAMES = 10
 
+# What each timing found besides its time, by the timing's name.
+FOUND = pytest.StashKey[dict[str, dict[str, Any]]]()
+
 
 def pytest_benchmark_update_machine_info(machine_info: dict[str, Any]) -> None:
     """Keep the versions beside the machine: both decide a timing."""
@@ -30,6 +33,26 @@ def pytest_benchmark_update_machine_info(machine_info: dict[str, Any]) -> None:
 def pytest_addoption(parser: pytest.Parser) -> None:
     parser.addoption("--ann-places", default="1000,10000", help="sizes of the maps that test_ann.py grows, rising")
     parser.addoption("--sweep", help="the sweep that test_sweeps.py holds against its cells one by one")
+
+
+@pytest.fixture(autouse=True)
+def found(request: pytest.FixtureRequest) -> Iterator[None]:
+    """Keep what a timing found besides its time: ratios, recalls, sizes."""
+    yield
+    if benchmark := request.node.funcargs.get("benchmark"):
+        request.config.stash.setdefault(FOUND, {})[request.node.name] = dict(benchmark.extra_info)
+
+
+def pytest_terminal_summary(terminalreporter: pytest.TerminalReporter, config: pytest.Config) -> None:
+    """Print it after the times, which is all that pytest-benchmark prints."""
+    if config.getoption("benchmark_disable"):
+        return
+    for name, extra in config.stash.get(FOUND, {}).items():
+        measured = {key: value for key, value in extra.items() if isinstance(value, float)}
+        if measured:
+            terminalreporter.section(name, sep="-")
+        for key, value in measured.items():
+            terminalreporter.line(f"{key:32} {value:.4g}")
 
 
 class Drawn:

@@ -1,13 +1,14 @@
 """How long each registered localizer takes to describe a frame, to answer with 10, 100 and 1000 places, and to add one.
 
 Group "locate one query" times those that find the best place without the response of every place, against all responses
-at the same turn: `extra_info["per_respond"]` is the ratio of the CPU times of both, over several queries.
+at the same turn: `extra_info["per_respond"]` is the ratio of the CPU times of both, over several queries; "matched",
+of CoHOG, the share of regions that were matched.
 
 Group "answer one query on every core" times those that have the option `threads`: `extra_info["quicker"]` is the time
 of one thread by the clock over that of as many as there are cores, at the same turn.
 
 One that looks through an encoder is timed with each registered encoder; but with `ENCODER` alone where it has no
-`compare`, since its time does not tell encoders apart.
+`compare`, since its time does not tell encoders apart. Max-Pi besides keeps log-polar maps as bytes.
 """
 
 from __future__ import annotations
@@ -16,7 +17,7 @@ import os
 from collections.abc import Callable, Iterator
 from functools import cache
 from itertools import cycle, islice
-from statistics import median
+from statistics import mean, median
 from time import perf_counter, process_time
 from typing import Any, TypeAlias
 
@@ -31,6 +32,7 @@ from vprbench.plugins import find, plugins
 from vprbench.protocols import DescriptorLocalizer, Encoder, Localizer, Locating, Storing
 from vprbench.route import Route
 from vprbench.types import Observation, hypothesis
+from vprbench_localizers.cohog import CoHOG
 
 Agent: TypeAlias = dict[str, str]
 
@@ -41,13 +43,14 @@ ENCODER = "hsd-15-30"
 
 
 def agents() -> Iterator[Agent]:
-    """Every localizer, with every encoder if it takes one."""
+    """Every localizer, with every encoder if it takes one; and signatures of one byte a value."""
     for name, plugin in plugins("localizer").items():
         if "encoder" in parameters(factory := plugin.load()):
             encoders = plugins("encoder") if hasattr(factory, "compare") else [ENCODER]
             yield from ({"localizer": name, "encoder": encoder} for encoder in encoders)
         else:
             yield {"localizer": name}
+    yield {"localizer": "max-pi", "encoder": "log-polar", "storage": "uint8"}
 
 
 AGENTS = list(agents())
@@ -85,15 +88,15 @@ class Memory:
 @pytest.fixture(scope="module")
 def memory_of(
     street: Route, training: list[list[Observation]], fitted_encoder: Callable[[str], Encoder]
-) -> Callable[[str, str | None], Memory]:
-    """Memories by localizer and encoder, each trained once for all timings."""
+) -> Callable[..., Memory]:
+    """Memories by localizer, encoder and options, each trained once for all timings."""
 
     @cache
-    def trained(name: str, encoder: str | None) -> Memory:
-        options = {"encoder": fitted_encoder(encoder)} if encoder else {}
-        localizer: Any = find("localizer", name).load()(**options)
-        localizer.fit(training)
-        return Memory(localizer, list(Drive(street.learn)))
+    def trained(localizer: str, encoder: str | None = None, **options: str) -> Memory:
+        through = {"encoder": fitted_encoder(encoder)} if encoder else {}
+        made: Any = find("localizer", localizer).load()(**through, **options)
+        made.fit(training)
+        return Memory(made, list(Drive(street.learn)))
 
     return trained
 
@@ -104,8 +107,8 @@ def queries(street: Route) -> Iterator[Observation]:
 
 
 @pytest.fixture
-def memory(memory_of: Callable[[str, str | None], Memory], agent: Agent) -> Memory:
-    return memory_of(agent["localizer"], agent.get("encoder"))
+def memory(memory_of: Callable[..., Memory], agent: Agent) -> Memory:
+    return memory_of(**agent)
 
 
 @pytest.mark.benchmark(group="describe one frame")
@@ -173,6 +176,8 @@ def test_locate(
     if benchmark.stats:
         seen = [next(queries) for _ in range(3)]
         benchmark.extra_info |= {"per_respond": cpu(localizer.locate, seen) / cpu(localizer.respond, seen)}
+        if isinstance(localizer, CoHOG):
+            benchmark.extra_info |= {"matched": mean(localizer.search(localizer.describe(q)).matched for q in seen)}
 
 
 def cpu(answer: Callable[[Observation], object], queries: list[Observation]) -> float:
