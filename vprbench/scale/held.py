@@ -30,5 +30,9 @@ def held_bytes(thing: object, without: Iterable[object] = ()) -> int:
             continue
         seen.add(id(found))
         total += sys.getsizeof(found)
+        if isinstance(found, np.ndarray) and found.base is not None and id(found.base) not in seen:
+            # The values belong to something that numpy does not know the size of, such as what numba returns.
+            seen.add(id(found.base))
+            total += found.nbytes
         left += gc.get_referents(found)
     return total

@@ -3,8 +3,10 @@
 from __future__ import annotations
 
 from functools import partial
+from typing import Any
 
 import numpy as np
+from numba import njit
 
 from vprbench.scale.held import held_bytes
 
@@ -31,6 +33,13 @@ def test_arrays_weigh_what_they_hold_wherever_they_are() -> None:
 def test_a_view_holds_all_that_it_is_a_view_of_once() -> None:
     array = np.zeros(3 * MEGABYTE, np.uint8)
     assert megabytes(Holder(array[:5], array[1:].reshape(-1, 1)[:2])) == 3
+
+
+def test_values_that_are_not_numpy_s_own_weigh_the_same() -> None:
+    made_by_numba: Any = njit(lambda count: np.zeros(count, np.uint8))
+    array = made_by_numba(3 * MEGABYTE)
+    assert megabytes([array, array[5:], array.reshape(-1, 1)]) == 3
+    assert megabytes(np.frombuffer(bytearray(MEGABYTE), np.uint8)) == 1
 
 
 def test_what_is_left_out_and_what_all_share_weigh_nothing() -> None:
