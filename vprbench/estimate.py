@@ -8,7 +8,7 @@ from dataclasses import dataclass, field, replace
 from math import log2
 from statistics import median
 from time import process_time
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 
@@ -21,6 +21,7 @@ from vprbench.observation import Drive, observe
 from vprbench.pool import Settings
 from vprbench.protocols import DescriptorLocalizer, Encoder, Localizer, Storable
 from vprbench.route import Route, Traverse
+from vprbench.scale.held import held_bytes
 from vprbench.sweep import Job
 from vprbench.threads import one_thread
 
@@ -32,6 +33,9 @@ SAMPLE = 12
 # Vigilances tried until there are as many places as asked for: 3 to 13, 7.5 on average, for four encoders on three
 # roads at 2, 3 and 5 m.
 TRIES = 8
+
+# Of a response, in the matrix of all.
+RESPONSE_BYTES = 4
 
 # Metres, so short that every frame becomes a place.
 SHORT_STEP = 1e-3
@@ -45,11 +49,13 @@ class Estimate:
         frames: frames to look at, training frames included; one that is played several times counts each time.
         pairs: frame pairs to compare; 0 for a localizer that can only be played.
         seconds: on one core of this machine.
+        bytes: of descriptions and responses, which are kept until the job ends; 0 for one that can only be played.
     """
 
     frames: int
     pairs: int
     seconds: float
+    bytes: int = 0
 
 
 @dataclass(frozen=True)
@@ -153,7 +159,8 @@ def _measure(job: Job, route: Route, memory: FrameMemory, frame_seconds: float) 
     else:
         work = _by_playing(job, route, localizer)
     training = sum(map(len, route.training))
-    return _Measured(Estimate(work.frames + training, work.pairs, work.seconds + calibrating), fitting, getting)
+    whole = replace(work, frames=work.frames + training, seconds=work.seconds + calibrating)
+    return _Measured(whole, fitting, getting)
 
 
 def _fitted(make: Callable[[], Encoder], route: Route) -> tuple[Encoder, float]:
@@ -181,8 +188,9 @@ def _fitted(make: Callable[[], Encoder], route: Route) -> tuple[Encoder, float]:
 def _by_matrix(job: Job, route: Route, localizer: DescriptorLocalizer[Any]) -> Estimate:
     """What the response matrix takes: each frame is described once, for all cells together."""
     frames, pairs = len(route.learn) + len(route.test), _pairs(job, route, localizer)
-    describing, comparing = _matrix_costs(route, localizer)
-    return Estimate(frames, pairs, frames * describing + pairs * comparing)
+    cost = _matrix_costs(route, localizer)
+    kept = round(frames * cost.description_bytes) + RESPONSE_BYTES * frames * len(route.learn)
+    return Estimate(frames, pairs, frames * cost.describing + pairs * cost.comparing, kept)
 
 
 def _by_playing(job: Job, route: Route, localizer: Localizer) -> Estimate:
@@ -210,8 +218,16 @@ def _pairs(job: Job, route: Route, localizer: Localizer) -> int:
     return places * (frames + len(route.test))
 
 
-def _matrix_costs(route: Route, localizer: DescriptorLocalizer[Any]) -> tuple[float, float]:
-    """Seconds to describe a frame that is at hand, and to compare a pair."""
+class _MatrixCosts(NamedTuple):
+    """Seconds to describe a frame that is at hand, and to compare a pair; bytes of a description."""
+
+    describing: float
+    comparing: float
+    description_bytes: float
+
+
+def _matrix_costs(route: Route, localizer: DescriptorLocalizer[Any]) -> _MatrixCosts:
+    """What a few frames cost."""
     drive = Drive(route.test, gps=False)
     picked = _picked(drive)
     described = [localizer.describe(drive[i]) for i in picked[:2]]
@@ -220,7 +236,8 @@ def _matrix_costs(route: Route, localizer: DescriptorLocalizer[Any]) -> tuple[fl
     described = [localizer.describe(drive[i]) for i in picked]
     middle = process_time()
     localizer.compare(described, described)
-    return (middle - started) / SAMPLE, (process_time() - middle) / SAMPLE**2
+    compared = process_time() - middle
+    return _MatrixCosts((middle - started) / SAMPLE, compared / SAMPLE**2, held_bytes(described) / SAMPLE)
 
 
 def _playing_costs(route: Route, localizer: Localizer) -> tuple[float, float]:

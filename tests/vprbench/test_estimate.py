@@ -102,6 +102,13 @@ def test_the_vigilances_tried_are_counted(fake: Fake) -> None:
     assert 0.5 < said.seconds / fake.now < 2
 
 
+def test_what_a_matrix_keeps_is_known_beforehand(toy_route: Route, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr("vprbench.estimate.load_route", lambda *names, **paths: toy_route)
+    said = Estimator(Settings()).estimate(replace(JOB, config="cohog"))
+    # 32 x 32 cells of 8 values, as many norms and as many weights, of 41 learn and 30 test frames.
+    assert said.bytes == pytest.approx(71 * 32 * 32 * 10 * 4 + 41 * 71 * 4, rel=0.02)
+
+
 @dataclass
 class SlowFrames:
     """Frames that take their time to read, by the clock of the localizer."""

@@ -21,16 +21,17 @@ def print_estimate(todo: Sequence[Job], settings: Settings, console: Console) ->
     """Print one line a job, why some cannot run, and the whole."""
     estimator, costs, faults = Estimator(settings), list[Estimate](), list[str]()
     table = Table(box=None, pad_edge=False)
-    for column in ("route / agent / seed", "cells", "frames", "frame pairs", "seconds"):
+    for column in ("route / agent / seed", "cells", "frames", "frame pairs", "MB", "seconds"):
         table.add_column(column, justify="left" if column.startswith("route") else "right")
     for job in todo:
         cost = _estimate(estimator, job)
         if isinstance(cost, Estimate):
             costs.append(cost)
-            numbers = f"{cost.frames}", str(cost.pairs or "-"), f"{cost.seconds:.0f}"
+            megabytes = f"{cost.bytes / 1e6:.0f}" if cost.bytes else "-"
+            numbers = [f"{cost.frames}", str(cost.pairs or "-"), megabytes, f"{cost.seconds:.0f}"]
         else:
             faults.append(f"{job}: {cost}")
-            numbers = "-", "-", "fails"
+            numbers = ["-", "-", "-", "fails"]
         table.add_row(escape(str(job)), str(len(job.cells)), *numbers)
     console.print(table)
     for fault in faults:
