@@ -9,7 +9,7 @@ import pytest
 from numba import njit
 from numpy.typing import NDArray
 
-from vprbench_localizers.region_match import describe_regions, score_places
+from vprbench_localizers.region_match import REGIONS, describe_regions, match_rows, room_to_match
 from vprbench_localizers.wide_vectors import use_wide_vectors
 
 Values = NDArray[np.float32]
@@ -28,13 +28,16 @@ def hinted(scale: Values, values: Values, sums: Values) -> None:
         sums[i] += scale[0] * values[i]
 
 
-def scores() -> Values:
-    """Of five random places, to a random query."""
+def shares() -> NDArray[np.float64]:
+    """What each row of a random query's regions adds to the scores of five random places."""
     random = np.random.default_rng(0)
     query, *places = (describe_regions(cells, np.ones((31, 31), bool)) for cells in random.random((6, 32, 32, 8)))
-    answer = np.empty(len(places), np.float32)
-    score_places(query, np.stack([place.planes for place in places]), answer)
-    return answer
+    asking, buffers, rows = room_to_match(query)
+    answer = []
+    for place in places:
+        match_rows(asking, place.planes, 0, REGIONS, buffers, rows)
+        answer.append(rows.copy())
+    return np.array(answer)
 
 
 def test_a_kernel_gets_vectors_of_512_bits_and_no_check_of_overlaps_where_there_are_any() -> None:
@@ -52,9 +55,9 @@ def test_a_kernel_gets_vectors_of_512_bits_and_no_check_of_overlaps_where_there_
     assert ("%zmm" in code) == HAS_WIDE
 
 
-def test_scores_do_not_depend_on_the_width_of_vectors_by_one_bit(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_what_a_row_adds_does_not_depend_on_the_width_of_vectors_by_one_bit(monkeypatch: pytest.MonkeyPatch) -> None:
     narrow = [f"{'+' if has and 'avx512' not in name else '-'}{name}" for name, has in FEATURES.items()]
     monkeypatch.setenv("NUMBA_CPU_FEATURES", ",".join(narrow))
-    program = f"from runpy import run_path; print(run_path({__file__!r})['scores']().tobytes().hex())"
+    program = f"from runpy import run_path; print(run_path({__file__!r})['shares']().tobytes().hex())"
     run = subprocess.run([sys.executable, "-c", program], capture_output=True, text=True, check=True)
-    assert run.stdout.strip() == scores().tobytes().hex()
+    assert run.stdout.strip() == shares().tobytes().hex()
