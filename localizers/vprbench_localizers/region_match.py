@@ -251,7 +251,9 @@ def _zeros(size: int) -> NDArray[np.float32]:
 def room_to_match(query: Description) -> tuple[Description, Buffers, NDArray[np.float64]]:
     """The query where each vector lies in one line of the cache; buffers; room for the share of every row."""
     planes = _zeros(query.planes.size).reshape(query.planes.shape)
-    planes[:] = query.planes
+    # numba takes seconds to compile `planes[:] = query.planes`.
+    for at, value in np.ndenumerate(query.planes):
+        planes[at] = value
     room = _zeros(SUMS + BLOCK + CELLS + 1)
     buffers = Buffers(room[:BLOCK], room[SUMS:], _zeros(REGIONS * CELLS).reshape(REGIONS, CELLS))
     return Description(planes, query.weights), buffers, np.zeros(REGIONS)
