@@ -21,6 +21,7 @@ from numba import njit
 from numpy.typing import NDArray
 
 from vprbench_localizers.on_threads import on_threads
+from vprbench_localizers.wide_vectors import use_wide_vectors
 
 __all__ = [
     "CELLS",
@@ -46,6 +47,8 @@ BLOCK = CELLS * CELLS
 # Sums begin half a block behind the products: a processor first tells addresses apart by their last 12 bits, so that a
 # load waits for a store a whole block of 4096 bytes away.
 SUMS = BLOCK + BLOCK // 2
+# Values to a line of the cache, and to the widest vector.
+LINE = 16
 
 # Sums are taken in the order written, wherever a kernel is inlined: responses must not depend on who asks. Nothing
 # here is negative, infinite or not a number, without which the maximum would not be one instruction.
@@ -134,12 +137,21 @@ def _cell(row: NDArray[np.float32], at: int) -> Cell:
     )
 
 
+@njit(cache=True, fastmath=False)
+def _rounded(value: np.float32, other: np.float32) -> np.float32:
+    """A product that is rounded before anything is added to it.
+
+    Without it either of the first two terms of `_product` could be the one that is not, as LLVM likes.
+    """
+    return value * other
+
+
 @njit(cache=True, fastmath=EXACT)
 def _product(cell: Cell, row: NDArray[np.float32], at: int) -> np.float32:
     """The dot product of a cell and the cell of `row` at a column."""
     return (
         cell[0] * row[at]
-        + cell[1] * row[CELLS + at]
+        + _rounded(cell[1], row[CELLS + at])
         + cell[2] * row[2 * CELLS + at]
         + cell[3] * row[3 * CELLS + at]
         + cell[4] * row[4 * CELLS + at]
@@ -157,6 +169,7 @@ def _multiply(
 
     Two cells of the place are taken at a time, so that each value of the query, once loaded, serves twice.
     """
+    use_wide_vectors()
     for at in range(0, CELLS, 2):
         cell, other = _cell(place, at), _cell(place, at + 1)
         for column in range(CELLS):
@@ -174,6 +187,7 @@ def _compare(sums: NDArray[np.float32], place: NDArray[np.float32], best: NDArra
 
     The place's last region is none; its 1 / |descriptor| is zero.
     """
+    use_wide_vectors()
     for at in range(0, CELLS, 4):
         inverse = place[INVERSES + at], place[INVERSES + at + 1], place[INVERSES + at + 2], place[INVERSES + at + 3]
         for column in range(CELLS):
@@ -226,12 +240,23 @@ def total(shares: NDArray[np.float64]) -> np.float32:
 
 
 @njit(cache=True)
+def _zeros(size: int) -> NDArray[np.float32]:
+    """Zeros that begin where a line of the cache does, so that no vector of them touches two."""
+    room = np.zeros(size + LINE, np.float32)
+    skipped = -(room.ctypes.data // room.itemsize) % LINE
+    return room[skipped : skipped + size]
+
+
+@njit(cache=True)
 def room_to_match(query: Description) -> tuple[Description, Buffers, NDArray[np.float64]]:
-    """The query where a vector of 8 values lies in one line of the cache; buffers; room for the share of every row."""
-    aligned = Description(query.planes.copy(), query.weights)
-    room = np.zeros(SUMS + BLOCK + CELLS + 1, np.float32)
-    buffers = Buffers(room[:BLOCK], room[SUMS:], np.zeros((REGIONS, CELLS), np.float32))
-    return aligned, buffers, np.zeros(REGIONS)
+    """The query where each vector lies in one line of the cache; buffers; room for the share of every row."""
+    planes = _zeros(query.planes.size).reshape(query.planes.shape)
+    # numba takes seconds to compile `planes[:] = query.planes`.
+    for at, value in np.ndenumerate(query.planes):
+        planes[at] = value
+    room = _zeros(SUMS + BLOCK + CELLS + 1)
+    buffers = Buffers(room[:BLOCK], room[SUMS:], _zeros(REGIONS * CELLS).reshape(REGIONS, CELLS))
+    return Description(planes, query.weights), buffers, np.zeros(REGIONS)
 
 
 @njit(cache=True, nogil=True)
