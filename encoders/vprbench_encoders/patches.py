@@ -44,10 +44,12 @@ class LocalView:
 
         A view that would leave the image is cut at its nearest place within.
         """
-        windows = np.lib.stride_tricks.sliding_window_view(image, (self.side, self.side))
+        height, width = image.shape
         corner = (points // 2).astype(np.int64) - self.side // 2
-        left, top = np.clip(corner.T, 0, [[windows.shape[1] - 1], [windows.shape[0] - 1]])
-        views = windows[top, left][:, self.disk]
+        left, top = np.clip(corner, 0, [width - self.side, height - self.side]).T
+        rows, columns = np.nonzero(self.disk)
+        # Pixel by pixel of all views.
+        views = image.ravel().take((rows * width + columns)[:, None] + (top * width + left)).T
         return views - views.mean(axis=1, keepdims=True)
 
     def picture(self, views: Float32[np.ndarray, "n size"]) -> Float32[np.ndarray, "n side side"]:
