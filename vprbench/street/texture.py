@@ -21,6 +21,8 @@ __all__ = ["Image", "Skins", "choose_level", "sample", "stack_skins"]
 # A level is halved once more as long as a pixel covers more of its texels than this (our choice: about
 # the geometric middle of one and two).
 _FINEST = 1.4
+# Of single precision, so that the arithmetic of images stays in it.
+_NONE, _HALF, _WHOLE, _WHITE = np.float32(0.0), np.float32(0.5), np.float32(1.0), np.float32(255.0)
 
 # Reflectance 0..1 multiplied by opacity, and opacity 0..1.
 Image = Float32[np.ndarray, "height width 2"]
@@ -51,20 +53,32 @@ def stack_skins(images: Sequence[Image]) -> Skins:
     return Skins(np.concatenate(blocks), np.array(table, np.int64))
 
 
-def _ripmap(image: Image) -> UInt16[np.ndarray, "height2 width2"]:
-    """Level (i, j), halved i times in width and j in height, lies at (2w - 2w/2^i, 2h - 2h/2^j)."""
-    rows = np.concatenate(_halvings(image, axis=0), axis=0)
-    both = np.concatenate(_halvings(rows, axis=1), axis=1)
-    full = np.pad(both, ((0, 1), (0, 1), (0, 0)))
-    texels = (np.clip(full, 0.0, 1.0) * 255.0 + 0.5).astype(np.uint16)
-    return texels[..., 0] << 8 | texels[..., 1]
+@njit(cache=True)
+def _ripmap(image: NDArray[np.float32]) -> NDArray[np.uint16]:
+    """Level (i, j), halved i times in width and j in height, lies at (2w - 2w/2^i, 2h - 2h/2^j).
+
+    So entry w + k of a row, and h + k of a column, is the mean of entries 2k and 2k + 1.
+    """
+    height, width = image.shape[:2]
+    levels = np.zeros((2 * height, 2 * width, 2), np.float32)
+    levels[:height, :width] = image
+    for k in range(height - 1):
+        levels[height + k] = (levels[2 * k] + levels[2 * k + 1]) * _HALF
+    texels = np.empty((2 * height, 2 * width), np.uint16)
+    for y in range(2 * height):
+        row = levels[y]
+        for k in range(width - 1):
+            for channel in range(2):
+                row[width + k, channel] = (row[2 * k, channel] + row[2 * k + 1, channel]) * _HALF
+        for x in range(2 * width):
+            texels[y, x] = _byte(row[x, 0]) << 8 | _byte(row[x, 1])
+    return texels
 
 
-def _halvings(image: Image, axis: int) -> list[Image]:
-    levels = [np.moveaxis(image, axis, 0)]
-    while len(levels[-1]) > 1:
-        levels.append((levels[-1][0::2] + levels[-1][1::2]) * np.float32(0.5))
-    return [np.moveaxis(level, 0, axis) for level in levels]
+@njit(cache=True)
+def _byte(share: np.float32) -> np.uint16:
+    """A share of 0..1 in 0..255, rounded."""
+    return np.uint16(min(max(share, _NONE), _WHOLE) * _WHITE + _HALF)
 
 
 @njit(cache=True, error_model="numpy")
