@@ -4,14 +4,15 @@ from __future__ import annotations
 
 import numpy as np
 
-from vprbench.street.backdrop import paint_ground, paint_sky
 from vprbench.street.camera import CAMERA, CY, EYE, FY
 from vprbench.street.canvas import Canvas, View
 from vprbench.street.drive import Drive, Motion
 from vprbench.street.film import develop
+from vprbench.street.ground import paint_ground
 from vprbench.street.mesh import MESHES
 from vprbench.street.parameters import StreetParameters
 from vprbench.street.raster import nearest_first, paint_things
+from vprbench.street.sky import paint_sky
 from vprbench.street.stage import Stage, set_stage
 from vprbench.street.things import Things
 from vprbench.types import FRAME_HEIGHT, FRAME_WIDTH, Frame

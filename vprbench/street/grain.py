@@ -19,17 +19,23 @@ def fractal(rng: np.random.Generator, height: int, width: int, coarsest: int = 3
     scale, octaves = 1, 0
     while scale <= coarsest:
         grid = rng.standard_normal((max(1, height // scale), max(1, width // scale)), np.float32)
-        total += _stretch(_stretch(grid, height).T, width).T
+        total += _stretch(_stretch(grid, height, axis=0), width, axis=1)
         scale, octaves = scale * 2, octaves + 1
     return total / np.float32(np.sqrt(octaves))
 
 
-def _stretch(grid: Luma, rows: int) -> Luma:
-    """The grid with more rows, linear between its own; the same on every machine, which cv2.resize does not promise."""
-    at = np.clip((np.arange(rows) + 0.5) * len(grid) / rows - 0.5, 0, len(grid) - 1)
+def _stretch(grid: Luma, size: int, axis: int) -> Luma:
+    """The grid as long as `size` on one axis, linear between its values.
+
+    It is the same on every machine, which cv2.resize does not promise.
+    """
+    length = grid.shape[axis]
+    if length == size:
+        return grid
+    at = np.clip((np.arange(size) + 0.5) * length / size - 0.5, 0, length - 1)
     low = at.astype(np.int64)
-    part = (at - low).astype(np.float32)[:, None]
-    return grid[low] * (1 - part) + grid[np.minimum(low + 1, len(grid) - 1)] * part
+    part = np.expand_dims((at - low).astype(np.float32), 1 - axis)
+    return grid.take(low, axis) * (1 - part) + grid.take(np.minimum(low + 1, length - 1), axis) * part
 
 
 def rectangle(luma: Luma, left: float, top: float, right: float, bottom: float, value: float) -> None:

@@ -47,7 +47,8 @@ def paint_hedge(rng: np.random.Generator) -> Image:
 
 def _leaves(rng: np.random.Generator, clumps: list[Clump]) -> tuple[Luma, Luma]:
     """Luma and alpha of clumps of leaves, frayed at their rims."""
-    y, x = (np.mgrid[0:_SIZE, 0:_SIZE] + 0.5) / _SIZE
+    x = (np.arange(_SIZE) + 0.5) / _SIZE
+    y = x[:, None]
     depth, light = np.full((_SIZE, _SIZE), -9.0), np.zeros((_SIZE, _SIZE))
     for cx, cy, rx, ry in clumps:
         here = 1.0 - ((x - cx) / rx) ** 2 - ((y - cy) / ry) ** 2

@@ -7,8 +7,10 @@ from numba import njit
 from numpy.typing import NDArray
 
 from vprbench.street.canvas import Canvas, View
-from vprbench.street.fill import cross, fill
+from vprbench.street.face import cross
+from vprbench.street.fill import fill
 from vprbench.street.mesh import BILLBOARD, CAR, Meshes
+from vprbench.street.pixels import no_pixels
 from vprbench.street.sunlight import Sunlight
 from vprbench.street.texture import Skins
 from vprbench.street.things import Things
@@ -37,6 +39,7 @@ def nearest_first(view: View, things: Things) -> Things:
 def paint_things(canvas: Canvas, view: View, things: Things, meshes: Meshes, skins: Skins, sunlight: Sunlight) -> None:
     """Paint all things in the order given: nearest first."""
     corners, polygon, edges, surface = np.empty((4, 3)), np.empty((5, 3)), np.empty((5, 3)), np.empty((4, 3))
+    pixels = no_pixels()
     for k in range(things.size):
         thing = things[k]
         for face in range(meshes.first[thing.mesh], meshes.first[thing.mesh + 1]):
@@ -45,7 +48,9 @@ def paint_things(canvas: Canvas, view: View, things: Things, meshes: Meshes, ski
             if count >= 3 and _project(view, polygon, count, edges):
                 skin = skins.table[thing.skin + meshes.slots[face]]
                 _light(thing, meshes.corners[face], sunlight, surface)
-                fill(canvas, view, polygon[:count], edges[:count], corners, skins.texels, skin, surface, sunlight)
+                fill(
+                    canvas, pixels, view, polygon[:count], edges[:count], corners, skins.texels, skin, surface, sunlight
+                )
 
 
 @njit(cache=True, error_model="numpy")

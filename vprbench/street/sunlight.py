@@ -15,8 +15,9 @@ from numba import njit
 from numpy.typing import NDArray
 
 from vprbench.street.course import BEHIND, Course
+from vprbench.street.pixels import Pixels
 
-__all__ = ["Outline", "Sunlight", "lit", "shade_stations", "sun_over"]
+__all__ = ["Outline", "Sunlight", "illuminate", "shade_stations", "sun_over"]
 
 _STEP = 0.125  # metres of street between the samples of an outline
 _PENUMBRA = 0.25  # metres over which a shadow's edge fades
@@ -93,26 +94,35 @@ def sun_over(
     )
 
 
+@njit(cache=True, error_model="numpy")
+def illuminate(sunlight: Sunlight, pixels: Pixels, count: int) -> None:
+    """Find the share of the sun's light, 0..1, that reaches each pixel of a batch."""
+    rays, casters, leaves = sunlight.rays, sunlight.casters, sunlight.leaves
+    last = rays.shape[0] - 1.0
+    inside, at = pixels.u, pixels.v
+    for i in range(count):
+        station, height = pixels.station[i], pixels.up[i]
+        here = _sample_at(station, last)
+        along, rise, toward_sun = rays[here, 1], rays[here, 2], rays[here, 0] * pixels.lateral[i]
+        across = rays[here, 3] - toward_sun
+        there = _sample_at(station + across * along, last)
+        over = min(max((height + across * rise - casters[there, 0]) / _PENUMBRA + 0.5, 0.0), 1.0)
+        pixels.light[i] = over if across > 0.2 else 1.0
+        across = rays[here, 4] - toward_sun
+        at[i], up = station + across * along, height + across * rise
+        there = _sample_at(at[i], last)
+        pixels.up[i] = up
+        depth = min(up - casters[there, 1], casters[there, 2] - up) * 1.5 + 0.5
+        inside[i] = min(depth, 1.0) if across > 0.0 else 0.0
+    for i in range(count):
+        if inside[i] > 0.0 and pixels.light[i] > 0.0:
+            pixels.light[i] *= 1.0 - inside[i] * _leafage(leaves, at[i] * _LEAVES, pixels.up[i] * _LEAVES)
+
+
 @njit(cache=True, error_model="numpy", inline="always")
-def lit(sunlight: Sunlight, station: float, lateral: float, height: float) -> float:
-    """Share of the sun's light, 0..1, that reaches a point given in street coordinates, metres."""
-    rays, casters = sunlight.rays, sunlight.casters
-    last = rays.shape[0] - 1
-    here = min(max(int((station + BEHIND) / _STEP), 0), last)
-    along, rise, toward_sun = rays[here, 1], rays[here, 2], rays[here, 0] * lateral
-    light = 1.0
-    across = rays[here, 3] - toward_sun
-    if across > 0.2:
-        there = min(max(int((station + across * along + BEHIND) / _STEP), 0), last)
-        light = min(max((height + across * rise - casters[there, 0]) / _PENUMBRA + 0.5, 0.0), 1.0)
-    across = rays[here, 4] - toward_sun
-    if across > 0.0 and light > 0.0:
-        at, up = station + across * along, height + across * rise
-        there = min(max(int((at + BEHIND) / _STEP), 0), last)
-        inside = min(up - casters[there, 1], casters[there, 2] - up) * 1.5 + 0.5
-        if inside > 0.0:
-            light *= 1.0 - min(inside, 1.0) * _leafage(sunlight.leaves, at * _LEAVES, up * _LEAVES)
-    return light
+def _sample_at(station: float, last: float) -> np.uint32:
+    """The number of the shade station there; of a ray that runs off the street, the last."""
+    return np.uint32(min(max(0.0, (station + BEHIND) / _STEP), last))
 
 
 @njit(cache=True, error_model="numpy")

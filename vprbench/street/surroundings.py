@@ -5,8 +5,8 @@ from __future__ import annotations
 import cv2
 import numpy as np
 
-from vprbench.street.backdrop import GROUND_HALF, GROUND_PERIOD, GROUND_ROAD
 from vprbench.street.grain import fractal, opaque, rectangle, with_alpha
+from vprbench.street.ground import GROUND_HALF, GROUND_PERIOD, GROUND_ROAD
 from vprbench.street.parameters import Environment
 from vprbench.street.texture import Image
 

@@ -15,12 +15,16 @@ from numba import njit
 from numpy.typing import NDArray
 
 from vprbench.errors import ConfigError
+from vprbench.street.pixels import Pixels
 
 __all__ = ["Image", "Skins", "choose_level", "sample", "stack_skins"]
 
 # A level is halved once more as long as a pixel covers more of its texels than this (our choice: about
 # the geometric middle of one and two).
 _FINEST = 1.4
+_NEXT = np.uint32(1)
+# Of single precision, so that the arithmetic of images stays in it.
+_NONE, _HALF, _WHOLE, _WHITE = np.float32(0.0), np.float32(0.5), np.float32(1.0), np.float32(255.0)
 
 # Reflectance 0..1 multiplied by opacity, and opacity 0..1.
 Image = Float32[np.ndarray, "height width 2"]
@@ -53,18 +57,34 @@ def stack_skins(images: Sequence[Image]) -> Skins:
 
 def _ripmap(image: Image) -> UInt16[np.ndarray, "height2 width2"]:
     """Level (i, j), halved i times in width and j in height, lies at (2w - 2w/2^i, 2h - 2h/2^j)."""
-    rows = np.concatenate(_halvings(image, axis=0), axis=0)
-    both = np.concatenate(_halvings(rows, axis=1), axis=1)
-    full = np.pad(both, ((0, 1), (0, 1), (0, 0)))
-    texels = (np.clip(full, 0.0, 1.0) * 255.0 + 0.5).astype(np.uint16)
-    return texels[..., 0] << 8 | texels[..., 1]
+    height, width = image.shape[:2]
+    levels = np.zeros((2 * height, 2 * width, 2), np.float32)
+    levels[:height, :width] = image
+    return _halve(levels, height, width)
 
 
-def _halvings(image: Image, axis: int) -> list[Image]:
-    levels = [np.moveaxis(image, axis, 0)]
-    while len(levels[-1]) > 1:
-        levels.append((levels[-1][0::2] + levels[-1][1::2]) * np.float32(0.5))
-    return [np.moveaxis(level, 0, axis) for level in levels]
+@njit(cache=True)
+def _halve(levels: NDArray[np.float32], height: int, width: int) -> NDArray[np.uint16]:
+    """The texels of all levels; entry w + k of a row, and h + k of a column, is the mean of entries 2k and 2k + 1."""
+    for k in range(height - 1):
+        for x in range(width):
+            for channel in range(2):
+                levels[height + k, x, channel] = (levels[2 * k, x, channel] + levels[2 * k + 1, x, channel]) * _HALF
+    texels = np.empty(levels.shape[:2], np.uint16)
+    for y in range(2 * height):
+        row = levels[y]
+        for k in range(width - 1):
+            for channel in range(2):
+                row[width + k, channel] = (row[2 * k, channel] + row[2 * k + 1, channel]) * _HALF
+        for x in range(2 * width):
+            texels[y, x] = _byte(row[x, 0]) << 8 | _byte(row[x, 1])
+    return texels
+
+
+@njit(cache=True)
+def _byte(share: np.float32) -> np.uint16:
+    """A share of 0..1 in 0..255, rounded."""
+    return np.uint16(min(max(share, _NONE), _WHOLE) * _WHITE + _HALF)
 
 
 @njit(cache=True, error_model="numpy")
@@ -83,22 +103,24 @@ def choose_level(skin: NDArray[np.int64], footprint_u: float, footprint_v: float
     return skin[0] + (2 * height - 2 * h) * 2 * width + 2 * width - 2 * w, w, h
 
 
-@njit(cache=True, error_model="numpy", inline="always")
-def sample(
-    texels: NDArray[np.uint16], skin: NDArray[np.int64], level: tuple[int, int, int], u: float, v: float
-) -> tuple[float, float]:
-    """Luma (multiplied by alpha) and alpha, 0..255, of one level at (u, v) in 0..1, bilinear."""
-    first, w, h = level
-    stride = 2 << skin[1]
-    x = min(max(u * w - 0.5, 0.0), w - 1.0)
-    y = min(max(v * h - 0.5, 0.0), h - 1.0)
-    x0, y0 = int(x), int(y)
-    fx, fy = x - x0, y - y0
-    at = first + y0 * stride + x0
-    right = 1 if x0 < w - 1 else 0
-    below = at + (stride if y0 < h - 1 else 0)
-    a, b, c, d = texels[at], texels[at + right], texels[below], texels[below + right]
-    wa, wb, wc, wd = (1 - fx) * (1 - fy), fx * (1 - fy), (1 - fx) * fy, fx * fy
-    luma = wa * (a >> 8) + wb * (b >> 8) + wc * (c >> 8) + wd * (d >> 8)
-    alpha = wa * (a & 255) + wb * (b & 255) + wc * (c & 255) + wd * (d & 255)
-    return luma, alpha
+@njit(cache=True, error_model="numpy")
+def sample(texels: NDArray[np.uint16], skin: NDArray[np.int64], pixels: Pixels, count: int) -> None:
+    """Find luma (multiplied by alpha) and alpha of a batch, each at (u, v) of its level, bilinear.
+
+    The texels to the right and below always exist: where a level ends they count nothing.
+    """
+    stride = np.int32(2 << skin[1])
+    at, right, down = pixels.first, pixels.luma, pixels.alpha
+    for i in range(count):
+        x = min(max(0.0, pixels.u[i] * pixels.wide[i] - 0.5), pixels.wide[i] - 1.0)
+        y = min(max(0.0, pixels.v[i] * pixels.high[i] - 0.5), pixels.high[i] - 1.0)
+        column, row = np.int32(x), np.int32(y)
+        at[i] += row * stride + column
+        right[i], down[i] = x - column, y - row
+    for i in range(count):
+        upper, fx, fy = np.uint32(at[i]), right[i], down[i]
+        lower = np.uint32(upper + stride)
+        a, b, c, d = texels[upper], texels[upper + _NEXT], texels[lower], texels[lower + _NEXT]
+        wa, wb, wc, wd = (1 - fx) * (1 - fy), fx * (1 - fy), (1 - fx) * fy, fx * fy
+        pixels.luma[i] = wa * (a >> 8) + wb * (b >> 8) + wc * (c >> 8) + wd * (d >> 8)
+        pixels.alpha[i] = wa * (a & 255) + wb * (b & 255) + wc * (c & 255) + wd * (d & 255)

@@ -7,9 +7,9 @@ import pytest
 from hypothesis import assume, given
 from hypothesis import strategies as st
 
-from vprbench.street.backdrop import GROUND_HALF, GROUND_ROAD, paint_ground
 from vprbench.street.canvas import Canvas, View
 from vprbench.street.course import Course
+from vprbench.street.ground import GROUND_HALF, GROUND_ROAD, paint_ground
 from vprbench.street.mesh import BILLBOARD, BOX, CAR, DECAL, FLAT_HOUSE, GABLED_HOUSE, MESHES
 from vprbench.street.raster import nearest_first, paint_things
 from vprbench.street.sunlight import Sunlight

@@ -8,7 +8,8 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from vprbench.street.course import Course
-from vprbench.street.sunlight import Outline, Sunlight, lit, shade_stations, sun_over
+from vprbench.street.pixels import no_pixels
+from vprbench.street.sunlight import Outline, Sunlight, illuminate, shade_stations, sun_over
 
 WALL, HEIGHT = 6.0, 8.0
 FROM, TO = 20.0, 60.0  # stations between which houses stand on the right
@@ -22,6 +23,14 @@ def sun(course: Course, azimuth: float, elevation: float, *, crown: tuple[float,
     full = np.ones_like(houses)
     outline = Outline(wall=WALL * full, crown=4 * full, height=houses, low=crown[0] * full, high=crown[1] * full)
     return sun_over(course, outline, azimuth, elevation, np.ones((64, 64)))
+
+
+def lit(sunlight: Sunlight, station: float, lateral: float, height: float) -> float:
+    """Share of the sun's light that reaches one point."""
+    pixels = no_pixels()
+    pixels.station[0], pixels.lateral[0], pixels.up[0] = station, lateral, height
+    illuminate(sunlight, pixels, 1)
+    return float(pixels.light[0])
 
 
 @given(st.floats(0.5, 1.2), st.floats(-5.0, 5.0))

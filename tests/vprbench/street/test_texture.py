@@ -8,6 +8,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from vprbench.errors import ConfigError
+from vprbench.street.pixels import no_pixels
 from vprbench.street.texture import Skins, choose_level, sample, stack_skins
 
 unit = st.floats(0.0, 1.0)
@@ -19,8 +20,16 @@ def skins(luma: np.ndarray, alpha: float = 1.0) -> Skins:
 
 
 def look(texture: Skins, u: float, v: float, du: float, dv: float) -> tuple[float, float]:
-    luma, alpha = sample(texture.texels, texture.table[0], choose_level(texture.table[0], du, dv), u, v)
-    return float(luma), float(alpha)
+    """Luma and alpha at (u, v) of the only texture, seen in pixels of some size."""
+    return see(texture, 0, u, v, du, dv)
+
+
+def see(texture: Skins, number: int, u: float, v: float, du: float, dv: float) -> tuple[float, float]:
+    skin, pixels = texture.table[number], no_pixels()
+    pixels.first[0], pixels.wide[0], pixels.high[0] = choose_level(skin, du, dv)
+    pixels.u[0], pixels.v[0] = u, v
+    sample(texture.texels, skin, pixels, 1)
+    return float(pixels.luma[0]), float(pixels.alpha[0])
 
 
 RAMP = np.tile((np.arange(SIDE) + 0.5) / SIDE, (SIDE, 1))
@@ -53,9 +62,9 @@ def test_seen_at_a_slant_only_the_far_direction_is_averaged(u: float, row: int) 
 def test_textures_are_kept_apart() -> None:
     images = [np.full((8, 4 << i, 2), i / 4, np.float32) for i in range(4)]
     stacked = stack_skins(images)
-    for i, row in enumerate(stacked.table):
+    for i in range(len(images)):
         for footprint in (0.0, 0.3, 1.0):
-            luma, _ = sample(stacked.texels, row, choose_level(row, footprint, footprint), 1.0, 1.0)
+            luma, _ = see(stacked, i, 1.0, 1.0, footprint, footprint)
             assert luma == pytest.approx(255 * i / 4, abs=0.51)
 
 
