@@ -21,6 +21,7 @@ from vprbench_encoders.resolution import reduced
 
 __all__ = ["FocusDetector"]
 
+
 def _inside(image: Float32[np.ndarray, "height width"], margin: int) -> Float32[np.ndarray, "rows columns"]:
     """The part of an image that is at least `margin` from its border."""
     height, width = image.shape
