@@ -16,7 +16,8 @@ from vprbench.street.canvas import Canvas
 
 __all__ = ["CAPACITY", "Pixels", "drop_unseen", "lay", "no_pixels"]
 
-# Pixels in a batch: several rows of a frame, whose arrays (188 kB) stay in a core's cache.
+# Pixels in a batch: several rows of a frame, whose arrays (188 kB) stay in a core's cache. It must hold a row and a
+# column of any picture.
 CAPACITY = 2048
 
 _Whole = Int32[np.ndarray, " capacity"]
