@@ -108,6 +108,13 @@ def test_names_in_brackets_are_printed_as_they_are(answered: ResultTable, tell: 
     assert one.out.startswith("thumbnail[gain=0.5] on Tiny, a place every 5 m\n")
 
 
+@pytest.mark.usefixtures("answered")
+def test_a_step_is_known_without_describing_a_frame(tell: Callable[..., Told], monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr("vprbench.cli.single.ResponseMatrix", lambda *given: pytest.fail("it described all frames"))
+    done = tell("run", "Tiny", "cohog", "--routes", "routes.toml", "--distance", "5")
+    assert "step 5: " in done.out
+
+
 @pytest.mark.parametrize(
     ("stage", "answered", "shown"),
     [
