@@ -9,12 +9,9 @@ from numpy.typing import NDArray
 from vprbench.street.canvas import Canvas, View
 from vprbench.street.pixels import Pixels, drop_unseen, lay
 from vprbench.street.sunlight import Sunlight, illuminate
-from vprbench.street.texture import choose_level, sample
+from vprbench.street.texture import RUN, choose_level, sample
 
 __all__ = ["cross", "paint_face", "plane_of"]
-
-# Texture levels are chosen anew every so many pixels (a power of two).
-_RUN = 8
 
 _Line = tuple[float, float, float]  # a x + b y + c of pixels
 _Plane = tuple[_Line, _Line, _Line]
@@ -69,7 +66,7 @@ def _choose_levels(pixels: Pixels, count: int, plane: _Plane, skin: NDArray[np.i
     level, last_x, last_y = (0, 1, 1), -9, -9
     for i in range(count):
         x, y = pixels.x[i], pixels.y[i]
-        if x & (_RUN - 1) == 0 or x != last_x + 1 or y != last_y:
+        if x & (RUN - 1) == 0 or x != last_x + 1 or y != last_y:
             u, v, w = pixels.u[i], pixels.v[i], abs(pixels.light[i])
             du, dv = abs(u_x - u * w_x) + abs(u_y - u * w_y), abs(v_x - v * w_x) + abs(v_y - v * w_y)
             level = choose_level(skin, du * w, dv * w)

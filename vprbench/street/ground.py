@@ -12,7 +12,7 @@ from vprbench.street.canvas import OPAQUE, Canvas, View
 from vprbench.street.course import BEHIND, SPACING
 from vprbench.street.pixels import CAPACITY, Pixels, lay, no_pixels
 from vprbench.street.sunlight import Sunlight, illuminate
-from vprbench.street.texture import choose_level, sample
+from vprbench.street.texture import RUN, choose_level, sample
 
 __all__ = ["GROUND_HALF", "GROUND_PERIOD", "GROUND_ROAD", "paint_ground"]
 
@@ -98,7 +98,7 @@ def _collect(
         # The pixel to the left is so near that one step of Newton's method does.
         steps = 4 if anew else 1
         station, lateral, half, turn = _street_coordinates(course, rows.station[y], east, north, view, steps)
-        if x & 7 == 0 or anew:
+        if x & (RUN - 1) == 0 or anew:
             along, aside = reach + turn * across, across + turn * reach
             level = choose_level(skin, along / GROUND_PERIOD, aside / (2 * GROUND_HALF))
             rows.first[y], rows.wide[y], rows.high[y] = level

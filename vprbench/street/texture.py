@@ -17,8 +17,10 @@ from numpy.typing import NDArray
 from vprbench.errors import ConfigError
 from vprbench.street.pixels import Pixels
 
-__all__ = ["Image", "Skins", "choose_level", "sample", "stack_skins"]
+__all__ = ["RUN", "Image", "Skins", "choose_level", "sample", "stack_skins"]
 
+# Along a row levels are chosen anew every so many pixels (a power of two).
+RUN = 8
 # A level is halved once more as long as a pixel covers more of its texels than this (our choice: about
 # the geometric middle of one and two).
 _FINEST = 1.4
